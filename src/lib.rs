@@ -1,0 +1,32 @@
+//! Vair: animal fur from the micro-structure up.
+//!
+//! Data flows one way:
+//!
+//! ```text
+//! species -> fiber -> bake -> table -> bsdf -+
+//!    \                                       +-> scene -> render -> image
+//!     +---> groom <- skin -------------------+
+//! ```
+//!
+//! A [`species`] preset describes an animal's hair classes. [`fiber`] turns one station of one class
+//! into closed geometry, [`bake`] shoots photons at it, [`table`] stores where they went, [`bsdf`]
+//! makes tables usable by a renderer. [`groom`] grows strands on a [`skin`]; [`scene`] gathers
+//! everything that [`render`] needs; [`image`] writes pictures.
+
+pub mod bake;
+pub mod blame;
+pub mod bsdf;
+pub mod cli;
+pub mod color;
+pub mod fiber;
+pub mod groom;
+pub mod image;
+pub mod io;
+pub mod math;
+pub mod progress;
+pub mod render;
+pub mod sampling;
+pub mod scene;
+pub mod skin;
+pub mod species;
+pub mod table;

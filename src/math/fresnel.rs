@@ -1,0 +1,77 @@
+//! Dielectric reflection and refraction, unpolarized.
+
+use glam::DVec3;
+
+/// Unpolarized Fresnel reflectance of a smooth dielectric boundary.
+///
+/// * `cos_i`: cosine between the direction and the normal on its own side, in `[0, 1]`.
+/// * `eta`: index on the far side over the index on the near side, > 0.
+/// * Returns the reflectance in `[0, 1]` and the cosine of the refracted direction; the cosine is 0
+///   and the reflectance 1 beyond the critical angle.
+pub fn dielectric(cos_i: f64, eta: f64) -> (f64, f64) {
+    let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
+    if sin2_t >= 1.0 {
+        return (1.0, 0.0);
+    }
+    let cos_t = (1.0 - sin2_t).sqrt();
+    let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    (
+        0.5 * (parallel * parallel + perpendicular * perpendicular),
+        cos_t,
+    )
+}
+
+/// Mirror direction of a ray traveling along `dir` at a surface with unit normal `n`.
+pub fn reflect(dir: DVec3, n: DVec3) -> DVec3 {
+    dir - 2.0 * dir.dot(n) * n
+}
+
+/// Refracted direction of a ray traveling along unit `dir`.
+///
+/// * `n`: unit normal that faces the ray (`dir . n < 0`).
+/// * `eta`: index on the far side over the index on the near side.
+/// * `cos_t`: the cosine from [`dielectric`].
+pub fn refract(dir: DVec3, n: DVec3, eta: f64, cos_t: f64) -> DVec3 {
+    let cos_i = -dir.dot(n);
+    (dir / eta + (cos_i / eta - cos_t) * n).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normal_incidence_and_brewster() {
+        let (r, cos_t) = dielectric(1.0, 1.5);
+        assert!((r - 0.04).abs() < 1e-12 && (cos_t - 1.0).abs() < 1e-12);
+        // At Brewster's angle only the perpendicular half is left.
+        let cos_b = (1.0f64 / (1.0 + 1.5 * 1.5)).sqrt();
+        let (r, cos_t) = dielectric(cos_b, 1.5);
+        let perpendicular = (cos_b - 1.5 * cos_t) / (cos_b + 1.5 * cos_t);
+        assert!((r - 0.5 * perpendicular * perpendicular).abs() < 1e-12);
+    }
+
+    #[test]
+    fn total_internal_reflection_and_reversal() {
+        assert_eq!(dielectric(0.1, 1.0 / 1.5), (1.0, 0.0));
+        for i in 1..100 {
+            let cos_i = f64::from(i) / 100.0;
+            let (r, cos_t) = dielectric(cos_i, 1.55);
+            let (back, cos_back) = dielectric(cos_t, 1.0 / 1.55);
+            assert!((r - back).abs() < 1e-12 && (cos_back - cos_i).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn refraction_obeys_snell() {
+        let dir = DVec3::new(0.6, 0.2, -0.7).normalize();
+        let n = DVec3::Z;
+        let (_, cos_t) = dielectric(-dir.dot(n), 1.55);
+        let t = refract(dir, n, 1.55, cos_t);
+        let sin_in = dir.cross(n).length();
+        let sin_out = t.cross(n).length();
+        assert!((sin_in - 1.55 * sin_out).abs() < 1e-12);
+        assert!((reflect(dir, n) - DVec3::new(dir.x, dir.y, -dir.z)).length() < 1e-12);
+    }
+}

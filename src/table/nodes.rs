@@ -1,0 +1,135 @@
+//! The inclinations at which a table holds maps.
+
+use crate::math::frame;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// How query directions map to nodes, and in which frame photons are deposited.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mode {
+    /// As published: constant bins over the polar angle, `j = floor(N alpha / pi)`; photons in the
+    /// frame of the fiber; at most 16 events.
+    Paper,
+    /// Nodes denser toward grazing; photons in the frame that follows the specular cone,
+    /// `theta_o' = theta_o + (theta_q - theta_node)`; interpolated at look-up.
+    Cone,
+}
+
+/// The nodes of a table: bin `j` covers inclinations `edges[j] .. edges[j + 1]`, ascending, and is
+/// represented by `centers[j]`. Radians.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nodes {
+    /// How the nodes are used.
+    pub mode: Mode,
+    /// Bin boundaries, one more than bins, from -pi/2 to pi/2.
+    pub edges: Vec<f64>,
+    /// The inclination that stands for each bin.
+    pub centers: Vec<f64>,
+}
+
+impl Nodes {
+    /// * `bins`: 2..=256.
+    ///
+    /// In paper mode node `j` is the paper's bin `bins - 1 - j`: the paper counts from the tip, nodes
+    /// ascend in theta; file parts keep the paper's count.
+    pub fn new(mode: Mode, bins: usize) -> Self {
+        let at = |v: f64| match mode {
+            Mode::Paper => (v - 0.5) * PI,
+            Mode::Cone => grazing_warp(v),
+        };
+        let edges: Vec<f64> = (0..=bins).map(|i| at(i as f64 / bins as f64)).collect();
+        let centers = (0..bins)
+            .map(|i| at((i as f64 + 0.5) / bins as f64))
+            .collect();
+        Self {
+            mode,
+            edges,
+            centers,
+        }
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.centers.len()
+    }
+
+    /// Never true of a valid table.
+    pub fn is_empty(&self) -> bool {
+        self.centers.is_empty()
+    }
+
+    /// The bin that holds inclination `theta`.
+    pub fn bin(&self, theta: f64) -> usize {
+        match self.mode {
+            Mode::Paper => self.len() - 1 - frame::paper_bin(theta, self.len()),
+            Mode::Cone => {
+                let above = self.edges[1..self.len()].partition_point(|&e| e <= theta);
+                above.min(self.len() - 1)
+            }
+        }
+    }
+
+    /// The two nodes between which a look-up at `theta` interpolates, and the share of the second.
+    /// Paper mode does not interpolate: the share is 0.
+    pub fn bracket(&self, theta: f64) -> (usize, usize, f64) {
+        if self.mode == Mode::Paper {
+            let j = self.bin(theta);
+            return (j, j, 0.0);
+        }
+        let above = self.centers.partition_point(|&c| c <= theta);
+        if above == 0 {
+            return (0, 0, 0.0);
+        }
+        if above == self.len() {
+            return (above - 1, above - 1, 0.0);
+        }
+        let (lo, hi) = (self.centers[above - 1], self.centers[above]);
+        (above - 1, above, (theta - lo) / (hi - lo))
+    }
+}
+
+/// Maps `[0, 1]` to `[-pi/2, pi/2]`, evenly up to 60 degrees and twice as dense beyond: there the
+/// lobes change fastest. (Denser still starves the middle at 16 nodes.)
+fn grazing_warp(v: f64) -> f64 {
+    // In units of the coarse step: 60 + 2 * 30 = 120 degrees to each side.
+    let x = (2.0 * v - 1.0).abs() * 120.0;
+    let degrees = if x <= 60.0 {
+        x
+    } else {
+        60.0 + 0.5 * (x - 60.0)
+    };
+    degrees.to_radians().min(FRAC_PI_2).copysign(v - 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_span_the_sphere_and_bins_contain_their_centers() {
+        for mode in [Mode::Paper, Mode::Cone] {
+            for bins in [2, 16, 31] {
+                let nodes = Nodes::new(mode, bins);
+                assert!((nodes.edges[0] + FRAC_PI_2).abs() < 1e-12);
+                assert!((nodes.edges[bins] - FRAC_PI_2).abs() < 1e-12);
+                for (j, &c) in nodes.centers.iter().enumerate() {
+                    assert!(nodes.edges[j] < c && c < nodes.edges[j + 1]);
+                    assert_eq!(nodes.bin(c), j);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn brackets_interpolate_linearly() {
+        let nodes = Nodes::new(Mode::Cone, 16);
+        for i in -900..=900 {
+            let theta = f64::from(i) / 900.0 * FRAC_PI_2;
+            let (a, b, f) = nodes.bracket(theta);
+            let c = nodes.centers[a] * (1.0 - f) + nodes.centers[b] * f;
+            let clamped = theta.clamp(nodes.centers[0], nodes.centers[15]);
+            assert!((c - clamped).abs() < 1e-12, "{theta}");
+        }
+    }
+}
