@@ -26,6 +26,20 @@ pub fn paper_bin(theta: f64, bins: usize) -> usize {
     ((bins as f64 * alpha / PI).floor().max(0.0) as usize).min(bins - 1)
 }
 
+/// Moves a unit direction along its meridian by the angle whose sine and cosine are given, toward
+/// +Z for a positive angle, and on over the pole if it comes to that. Azimuth is kept (or turned by
+/// pi beyond the pole). This is the cone frame of the tables: with the angle `theta_q - theta_node`
+/// a specular cone stays where it is while the query inclination changes.
+pub fn shift_inclination(w: DVec3, sin: f64, cos: f64) -> DVec3 {
+    let c = w.x.hypot(w.y);
+    if c < 1e-12 {
+        // On the pole every meridian will do.
+        return DVec3::new(-w.z.signum() * sin, 0.0, w.z * cos);
+    }
+    let scale = (c * cos - w.z * sin) / c;
+    DVec3::new(w.x * scale, w.y * scale, w.z * cos + c * sin)
+}
+
 /// Right-handed basis at a strand: columns are X (toward `wo`, orthogonal to the tangent), Y and Z
 /// (the tangent). For `wo` along the tangent any X will do.
 pub fn strand_frame(tangent: Vec3, wo: Vec3) -> Mat3 {
@@ -44,6 +58,17 @@ mod tests {
             let theta = f64::from(i) * FRAC_PI_2 / 8.0;
             assert!((theta_of(direction(theta, 0.7)) - theta).abs() < 1e-14);
         }
+    }
+
+    #[test]
+    fn shifts_add_to_the_inclination_and_pass_the_pole() {
+        let shift = |theta: f64, phi: f64, delta: f64| {
+            shift_inclination(direction(theta, phi), delta.sin(), delta.cos())
+        };
+        assert!((shift(0.3, 1.1, 0.2) - direction(0.5, 1.1)).length() < 1e-14);
+        assert!((shift(0.3, 1.1, -0.7) - direction(-0.4, 1.1)).length() < 1e-14);
+        assert!((shift(1.5, 1.1, 0.2) - direction(PI - 1.7, 1.1 + PI)).length() < 1e-14);
+        assert!((shift(FRAC_PI_2, 0.0, 0.2).length() - 1.0).abs() < 1e-14);
     }
 
     #[test]

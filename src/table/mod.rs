@@ -4,7 +4,9 @@
 //! level; dyeing it with a pigment gives a scatter table of linear RGB.
 
 mod nodes;
+mod scatter;
 mod structure;
 
 pub use nodes::{Mode, Nodes};
+pub use scatter::ScatterTable;
 pub use structure::{Ledger, PHOTON, Provenance, StructureTable};

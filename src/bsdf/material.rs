@@ -1,0 +1,132 @@
+//! Which tables apply where along a strand.
+
+use super::{Blend, Bsdf};
+use crate::color::Rgb;
+use crate::table::ScatterTable;
+
+/// The scattering of one hair class along its strands.
+#[derive(Clone, Debug)]
+pub enum HairMaterial {
+    /// The same closed-form scattering everywhere.
+    Isotropic(Rgb),
+    /// Baked tables at stations along the hair, dyed for zones of pigment.
+    Tables(TableSet),
+}
+
+/// Where a zone of pigment ends, counted from the tip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zone {
+    /// End of the zone, millimeters from the tip; infinity for the last.
+    pub to_mm: f32,
+    /// Width of the transition to the next zone, millimeters.
+    pub softness_mm: f32,
+}
+
+/// Tables of one hair class.
+#[derive(Clone, Debug)]
+pub struct TableSet {
+    stations: Vec<f32>,
+    zones: Vec<Zone>,
+    /// `tables[station * zones + zone]`.
+    tables: Vec<ScatterTable>,
+}
+
+impl TableSet {
+    /// * `stations`: positions along the hair, 0 root .. 1 tip, ascending.
+    /// * `zones`: from the tip, ascending; the last one is open-ended.
+    /// * `tables`: one a station and zone, zones running fastest. `None` if the counts disagree.
+    pub fn new(stations: Vec<f32>, zones: Vec<Zone>, tables: Vec<ScatterTable>) -> Option<Self> {
+        let complete = !tables.is_empty() && tables.len() == stations.len() * zones.len();
+        complete.then_some(Self {
+            stations,
+            zones,
+            tables,
+        })
+    }
+
+    fn blend(&self, at: f32, tip_mm: f32) -> Blend<'_> {
+        let (s0, s1, s) = bracket_station(&self.stations, at);
+        let (z0, z1, z) = bracket_zone(&self.zones, tip_mm);
+        let table = |station: usize, zone: usize| &self.tables[station * self.zones.len() + zone];
+        Blend([
+            (table(s0, z0), (1.0 - s) * (1.0 - z)),
+            (table(s0, z1), (1.0 - s) * z),
+            (table(s1, z0), s * (1.0 - z)),
+            (table(s1, z1), s * z),
+        ])
+    }
+}
+
+fn bracket_station(stations: &[f32], at: f32) -> (usize, usize, f32) {
+    let above = stations.partition_point(|&s| s <= at);
+    if above == 0 {
+        (0, 0, 0.0)
+    } else if above == stations.len() {
+        (above - 1, above - 1, 0.0)
+    } else {
+        let (lo, hi) = (stations[above - 1], stations[above]);
+        (above - 1, above, (at - lo) / (hi - lo))
+    }
+}
+
+fn bracket_zone(zones: &[Zone], tip_mm: f32) -> (usize, usize, f32) {
+    for (i, zone) in zones.iter().enumerate().take(zones.len() - 1) {
+        let half = 0.5 * zone.softness_mm;
+        if tip_mm < zone.to_mm - half {
+            return (i, i, 0.0);
+        }
+        if tip_mm < zone.to_mm + half {
+            let t = (tip_mm - zone.to_mm + half) / zone.softness_mm;
+            return (i, i + 1, t * t * (3.0 - 2.0 * t));
+        }
+    }
+    (zones.len() - 1, zones.len() - 1, 0.0)
+}
+
+impl HairMaterial {
+    /// The model at a point of a strand.
+    ///
+    /// * `at`: position along the strand, 0 root .. 1 tip.
+    /// * `tip_mm`: distance from the tip along the strand, millimeters.
+    pub fn at(&self, at: f32, tip_mm: f32) -> Bsdf<'_> {
+        match self {
+            Self::Isotropic(albedo) => Bsdf::Isotropic(*albedo),
+            Self::Tables(set) => Bsdf::Tables(set.blend(at, tip_mm)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zones_blend_over_their_softness() {
+        let zones = [
+            Zone {
+                to_mm: 2.0,
+                softness_mm: 1.0,
+            },
+            Zone {
+                to_mm: 10.0,
+                softness_mm: 0.0,
+            },
+            Zone {
+                to_mm: f32::INFINITY,
+                softness_mm: 0.0,
+            },
+        ];
+        assert_eq!(bracket_zone(&zones, 1.4), (0, 0, 0.0));
+        assert_eq!(bracket_zone(&zones, 2.0), (0, 1, 0.5));
+        assert_eq!(bracket_zone(&zones, 9.9), (1, 1, 0.0));
+        assert_eq!(bracket_zone(&zones, 10.0), (2, 2, 0.0));
+    }
+
+    #[test]
+    fn stations_interpolate_and_hold_their_ends() {
+        assert_eq!(bracket_station(&[0.2, 0.8], 0.1), (0, 0, 0.0));
+        let (a, b, f) = bracket_station(&[0.2, 0.8], 0.5);
+        assert!(a == 0 && b == 1 && (f - 0.5).abs() < 1e-6);
+        assert_eq!(bracket_station(&[0.2, 0.8], 0.9), (1, 1, 0.0));
+    }
+}
