@@ -1,5 +1,7 @@
 //! Files: whole or not at all.
 
 mod atomic;
+mod exr;
 
 pub use atomic::{AtomicFile, FileError, check_writable, read_bounded};
+pub use exr::sort_exr_attributes;

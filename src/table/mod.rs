@@ -1,12 +1,19 @@
 //! The scattering function on unicubes: what a bake writes and what the renderer reads.
 //!
 //! A [`StructureTable`] holds one map per node (inclination of the query direction) and absorption
-//! level; dyeing it with a pigment gives a scatter table of linear RGB.
+//! level; dyeing it with a pigment gives [`ScatterMaps`] of linear RGB.
 
+mod check;
+mod error;
+mod exr;
+mod maps;
 mod nodes;
 mod scatter;
 mod structure;
 
+pub use self::exr::{FORMAT, TableFile};
+pub use error::TableError;
+pub use maps::ScatterMaps;
 pub use nodes::{Mode, Nodes};
 pub use scatter::ScatterTable;
 pub use structure::{Ledger, PHOTON, Provenance, StructureTable};

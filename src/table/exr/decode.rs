@@ -1,0 +1,211 @@
+//! Parts as tables.
+
+use super::attributes::Attributes;
+use super::parts::Part;
+use super::{FORMAT, TableFile, level_channel, node_of_part};
+use crate::table::{Ledger, Mode, Nodes, Provenance, ScatterMaps, StructureTable, TableError};
+use std::f64::consts::FRAC_PI_2;
+
+/// The table that the parts hold; every contradiction is refused.
+pub(super) fn table(parts: Vec<Part>) -> Result<TableFile, TableError> {
+    let Some(first) = parts.first() else {
+        return Err(wrong("it has no parts"));
+    };
+    let head = first.attributes.clone();
+    let format: i32 = head.get_int("format")?;
+    if format != FORMAT {
+        return Err(wrong(format!(
+            "it has format version {format}; this program reads version {FORMAT}"
+        )));
+    }
+    let warp = head.get_text("warp")?;
+    if warp != "unicube" {
+        return Err(wrong(format!(
+            "its texel warp is {warp:?}, not \"unicube\""
+        )));
+    }
+    let mode = match head.get_text("mode")? {
+        "paper" => Mode::Paper,
+        "cone" => Mode::Cone,
+        other => return Err(wrong(format!("its mode is {other:?}"))),
+    };
+    let res = first.res;
+    let (bins, face): (usize, usize) = (head.get_int("bins")?, head.get_int("face")?);
+    if bins != parts.len() || face != res {
+        return Err(wrong(format!(
+            "it has {} parts of width {res} but claims {bins} of width {face}",
+            parts.len()
+        )));
+    }
+    for (bin, part) in parts.iter().enumerate() {
+        if part.name != format!("bin{bin:02}") || part.res != res {
+            return Err(wrong(format!(
+                "part {bin} is called {:?} and {} texels wide; expected bin{bin:02} and {res}",
+                part.name, part.res
+            )));
+        }
+    }
+    // From here on everything is by node.
+    let mut by_node: Vec<Part> = parts;
+    if node_of_part(mode, bins, 0) != 0 {
+        by_node.reverse();
+    }
+    let nodes = nodes(mode, &by_node)?;
+    match head.get_text("kind")? {
+        "structure" => structure(nodes, by_node, &head).map(TableFile::Structure),
+        "scatter" => scatter(nodes, by_node, &head).map(TableFile::Scatter),
+        other => Err(wrong(format!(
+            "its kind is {other:?}, neither structure nor scatter"
+        ))),
+    }
+}
+
+fn structure(
+    nodes: Nodes,
+    parts: Vec<Part>,
+    head: &Attributes,
+) -> Result<StructureTable, TableError> {
+    let levels: Vec<f64> = head.get_numbers("levels")?;
+    let names: Vec<String> = (0..levels.len()).map(level_channel).collect();
+    let res = parts[0].res;
+    let mut table = StructureTable {
+        nodes,
+        res,
+        radius_um: head.get_double("radius_um")?,
+        flux: Vec::with_capacity(parts.len() * levels.len() * 6 * res * res),
+        error: Vec::with_capacity(parts.len() * 6 * res * res),
+        ledger: Vec::with_capacity(parts.len() * levels.len()),
+        provenance: provenance(head)?,
+        levels,
+    };
+    for mut part in parts {
+        table
+            .ledger
+            .extend(ledger(&part.attributes, table.levels.len())?);
+        expect_channels(&part, names.len() + 1)?;
+        for name in &names {
+            table.flux.extend(take_channel(&mut part, name)?);
+        }
+        table.error.extend(take_channel(&mut part, "error")?);
+    }
+    table.check()?;
+    Ok(table)
+}
+
+fn scatter(nodes: Nodes, parts: Vec<Part>, head: &Attributes) -> Result<ScatterMaps, TableError> {
+    let absorption: Vec<f64> = head.get_list("absorption_per_um", 3)?;
+    let mut maps = ScatterMaps {
+        nodes,
+        res: parts[0].res,
+        rgb: Vec::new(),
+        error: Vec::new(),
+        absorption_per_um: [absorption[0], absorption[1], absorption[2]],
+        radius_um: head.get_double("radius_um")?,
+        ledger: Vec::new(),
+        provenance: provenance(head)?,
+    };
+    for mut part in parts {
+        maps.ledger.extend(ledger(&part.attributes, 1)?);
+        expect_channels(&part, 4)?;
+        let r = take_channel(&mut part, "R")?;
+        let g = take_channel(&mut part, "G")?;
+        let b = take_channel(&mut part, "B")?;
+        let texels = r.iter().zip(&g).zip(&b);
+        maps.rgb.extend(texels.map(|((&r, &g), &b)| [r, g, b]));
+        maps.error.extend(take_channel(&mut part, "error")?);
+    }
+    maps.check()?;
+    Ok(maps)
+}
+
+/// Angles are degrees in files. The program's own nodes come back to the last bit; others as close
+/// as degrees allow.
+fn nodes(mode: Mode, parts: &[Part]) -> Result<Nodes, TableError> {
+    let mut nodes = Nodes {
+        mode,
+        edges: Vec::new(),
+        centers: Vec::new(),
+    };
+    for part in parts {
+        let from = part.attributes.get_double("theta_from_deg")?.to_radians();
+        match nodes.edges.last() {
+            Some(&last) if f64::abs(last - from) > 1e-9 => {
+                return Err(wrong(format!(
+                    "{} begins at {:.6} degrees where its neighbor ends at {:.6}",
+                    part.name,
+                    from.to_degrees(),
+                    last.to_degrees()
+                )));
+            }
+            Some(_) => {}
+            None => nodes.edges.push(from.max(-FRAC_PI_2)),
+        }
+        let to = part.attributes.get_double("theta_to_deg")?.to_radians();
+        let center = part.attributes.get_double("theta_deg")?.to_radians();
+        nodes.edges.push(to.min(FRAC_PI_2));
+        nodes.centers.push(center);
+    }
+    let own = Nodes::new(mode, parts.len());
+    let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+    if near(&nodes.edges, &own.edges) && near(&nodes.centers, &own.centers) {
+        return Ok(own);
+    }
+    Ok(nodes)
+}
+
+fn ledger(attributes: &Attributes, count: usize) -> Result<Vec<Ledger>, TableError> {
+    let [emitted, escaped, absorbed, truncated, lost] =
+        ["emitted", "escaped", "absorbed", "truncated", "lost"]
+            .map(|name| attributes.get_list::<u64>(name, count));
+    let (emitted, escaped, absorbed) = (emitted?, escaped?, absorbed?);
+    let (truncated, lost) = (truncated?, lost?);
+    let entry = |i: usize| Ledger {
+        emitted: emitted[i],
+        escaped: escaped[i],
+        absorbed: absorbed[i],
+        truncated: truncated[i],
+        lost: lost[i],
+    };
+    Ok((0..count).map(entry).collect())
+}
+
+fn provenance(head: &Attributes) -> Result<Provenance, TableError> {
+    Ok(Provenance {
+        species: head.get_text("species")?.to_owned(),
+        class: head.get_text("class")?.to_owned(),
+        station: head.get_double("station")?,
+        seed: head.get_parsed("seed")?,
+        max_events: head.get_parsed("max_events")?,
+        content: head.get_text("content")?.to_owned(),
+        species_text: head.get_text("species_text")?.to_owned(),
+        program: head.get_text("program")?.to_owned(),
+    })
+}
+
+fn expect_channels(part: &Part, count: usize) -> Result<(), TableError> {
+    if part.channels.len() == count {
+        return Ok(());
+    }
+    let names: Vec<&str> = part
+        .channels
+        .iter()
+        .map(|(name, _)| name.as_str())
+        .collect();
+    Err(wrong(format!(
+        "part {} has {} channels ({}), not {count}",
+        part.name,
+        names.len(),
+        names.join(" ")
+    )))
+}
+
+fn take_channel(part: &mut Part, name: &str) -> Result<Vec<f32>, TableError> {
+    let found = part.channels.iter_mut().find(|(n, _)| n == name);
+    let (_, samples) =
+        found.ok_or_else(|| wrong(format!("part {} has no channel {name}", part.name)))?;
+    Ok(std::mem::take(samples))
+}
+
+fn wrong(what: impl Into<String>) -> TableError {
+    TableError::Inconsistent(what.into())
+}

@@ -1,0 +1,112 @@
+//! Tables as parts.
+
+use super::attributes::Attributes;
+use super::parts::Part;
+use super::{FORMAT, level_channel, node_of_part};
+use crate::table::{Ledger, Mode, Nodes, PHOTON, Provenance, ScatterMaps, StructureTable};
+
+/// The parts of a structure table.
+pub(super) fn structure(table: &StructureTable) -> Vec<Part> {
+    let (levels, texels) = (table.levels.len(), table.texels());
+    let mut parts = parts(&table.nodes, table.res, |node, attributes| {
+        let ledger = &table.ledger[node * levels..(node + 1) * levels];
+        put_ledger(attributes, ledger);
+        attributes.list("albedo", (0..levels).map(|l| table.albedo(node, l)));
+        let mut channels: Vec<_> = (0..levels)
+            .map(|level| (level_channel(level), table.map(node, level).to_vec()))
+            .collect();
+        let error = &table.error[node * texels..(node + 1) * texels];
+        channels.push(("error".to_owned(), error.to_vec()));
+        channels
+    });
+    let head = &mut parts[0].attributes;
+    head.text("kind", "structure");
+    head.list("levels", &table.levels);
+    head.double("radius_um", table.radius_um);
+    put_provenance(head, &table.provenance);
+    parts
+}
+
+/// The parts of a dyed table.
+pub(super) fn scatter(maps: &ScatterMaps) -> Vec<Part> {
+    let texels = maps.texels();
+    let mut parts = parts(&maps.nodes, maps.res, |node, attributes| {
+        put_ledger(attributes, &maps.ledger[node..=node]);
+        attributes.list("albedo", maps.albedo(node));
+        let channel = |c: usize| maps.map(node).iter().map(|texel| texel[c]).collect();
+        vec![
+            ("R".to_owned(), channel(0)),
+            ("G".to_owned(), channel(1)),
+            ("B".to_owned(), channel(2)),
+            (
+                "error".to_owned(),
+                maps.error[node * texels..(node + 1) * texels].to_vec(),
+            ),
+        ]
+    });
+    let head = &mut parts[0].attributes;
+    head.text("kind", "scatter");
+    head.list("absorption_per_um", maps.absorption_per_um);
+    head.double("radius_um", maps.radius_um);
+    put_provenance(head, &maps.provenance);
+    parts
+}
+
+/// Parts with what both kinds have in common; `fill` adds a node's own attributes and gives its
+/// channels.
+fn parts(
+    nodes: &Nodes,
+    res: usize,
+    fill: impl Fn(usize, &mut Attributes) -> Vec<(String, Vec<f32>)>,
+) -> Vec<Part> {
+    let mut parts: Vec<Part> = (0..nodes.len())
+        .map(|bin| {
+            let node = node_of_part(nodes.mode, nodes.len(), bin);
+            let mut attributes = Attributes::default();
+            attributes.double("theta_deg", nodes.centers[node].to_degrees());
+            attributes.double("theta_from_deg", nodes.edges[node].to_degrees());
+            attributes.double("theta_to_deg", nodes.edges[node + 1].to_degrees());
+            let channels = fill(node, &mut attributes);
+            Part {
+                name: format!("bin{bin:02}"),
+                res,
+                channels,
+                attributes,
+            }
+        })
+        .collect();
+    let head = &mut parts[0].attributes;
+    head.int("format", FORMAT as usize);
+    head.int("bins", nodes.len());
+    head.int("face", res);
+    head.text("warp", "unicube");
+    head.text(
+        "mode",
+        match nodes.mode {
+            Mode::Paper => "paper",
+            Mode::Cone => "cone",
+        },
+    );
+    parts
+}
+
+fn put_ledger(attributes: &mut Attributes, ledger: &[Ledger]) {
+    let photons = ledger[0].emitted as f64 / PHOTON as f64;
+    attributes.double("photons", photons);
+    attributes.list("emitted", ledger.iter().map(|l| l.emitted));
+    attributes.list("escaped", ledger.iter().map(|l| l.escaped));
+    attributes.list("absorbed", ledger.iter().map(|l| l.absorbed));
+    attributes.list("truncated", ledger.iter().map(|l| l.truncated));
+    attributes.list("lost", ledger.iter().map(|l| l.lost));
+}
+
+fn put_provenance(head: &mut Attributes, provenance: &Provenance) {
+    head.text("species", &provenance.species);
+    head.text("class", &provenance.class);
+    head.double("station", provenance.station);
+    head.text("seed", provenance.seed.to_string());
+    head.text("max_events", provenance.max_events.to_string());
+    head.text("content", &provenance.content);
+    head.text("species_text", &provenance.species_text);
+    head.text("program", &provenance.program);
+}

@@ -1,0 +1,105 @@
+//! Tables as OpenEXR files. The format is described in `docs/table-format.md`.
+//!
+//! One part a bin, each a unicube with its faces stacked from top to bottom; one 32-bit float
+//! channel an absorption level (`a00`, `a01`, ...) or `R`, `G`, `B`, and `error`. Everything else
+//! is in attributes named `vair:...`.
+
+mod attributes;
+mod decode;
+mod encode;
+mod parts;
+
+use super::{Mode, ScatterMaps, StructureTable, TableError};
+use crate::io::{AtomicFile, read_bounded};
+use std::path::Path;
+
+/// Version of the file format; files of other versions are refused.
+pub const FORMAT: i32 = 1;
+
+/// Longest file that is read, bytes. Tables may hold `check::MAX_SAMPLES` floats at most.
+const MAX_FILE: u64 = 1 << 31;
+
+/// A table as a file holds it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TableFile {
+    /// A map per absorption level: what a bake writes.
+    Structure(StructureTable),
+    /// A map per color channel: what dyeing writes.
+    Scatter(ScatterMaps),
+}
+
+impl TableFile {
+    /// Reads a table of either kind. Refuses files that are not tables, of another format version,
+    /// larger than the limits, or inconsistent.
+    pub fn read(path: &Path) -> Result<Self, TableError> {
+        let bytes = read_bounded(path, MAX_FILE)?;
+        let parts = parts::decode(&bytes, path)?;
+        decode::table(parts).map_err(|e| e.of_file(path))
+    }
+
+    /// Writes the table: the file appears complete or not at all, and the same table gives the
+    /// same bytes.
+    pub fn write(&self, path: &Path) -> Result<(), TableError> {
+        match self {
+            Self::Structure(table) => table.write(path),
+            Self::Scatter(maps) => maps.write(path),
+        }
+    }
+}
+
+impl StructureTable {
+    /// Reads a structure table. See [`TableFile::read`].
+    pub fn read(path: &Path) -> Result<Self, TableError> {
+        match TableFile::read(path)? {
+            TableFile::Structure(table) => Ok(table),
+            TableFile::Scatter(_) => Err(TableError::NotTable {
+                path: path.to_owned(),
+                what: "it is dyed already (kind scatter); a structure table is needed".to_owned(),
+            }),
+        }
+    }
+
+    /// Writes the table. See [`TableFile::write`].
+    pub fn write(&self, path: &Path) -> Result<(), TableError> {
+        self.check()?;
+        let bytes = parts::encode(encode::structure(self), path)?;
+        Ok(AtomicFile::write_all_to(path, &bytes)?)
+    }
+}
+
+impl ScatterMaps {
+    /// Reads a dyed table. See [`TableFile::read`].
+    pub fn read(path: &Path) -> Result<Self, TableError> {
+        match TableFile::read(path)? {
+            TableFile::Scatter(maps) => Ok(maps),
+            TableFile::Structure(_) => Err(TableError::NotTable {
+                path: path.to_owned(),
+                what: "it is not dyed yet (kind structure); dye it first".to_owned(),
+            }),
+        }
+    }
+
+    /// Writes the table. See [`TableFile::write`].
+    pub fn write(&self, path: &Path) -> Result<(), TableError> {
+        self.check()?;
+        let bytes = parts::encode(encode::scatter(self), path)?;
+        Ok(AtomicFile::write_all_to(path, &bytes)?)
+    }
+}
+
+/// The node that part `bin` holds. The paper counts its bins from the tip (alpha = 0), nodes
+/// ascend in theta.
+pub(super) fn node_of_part(mode: Mode, bins: usize, bin: usize) -> usize {
+    match mode {
+        Mode::Paper => bins - 1 - bin,
+        Mode::Cone => bin,
+    }
+}
+
+/// Channel name of an absorption level.
+fn level_channel(level: usize) -> String {
+    format!("a{level:02}")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,48 @@
+//! A dyed table as plain data: what `dye` makes, what files hold and what the renderer prepares
+//! for look-up.
+
+use super::{Ledger, Nodes, Provenance};
+
+/// The scattering of one fiber with one pigment: flux fractions per node and texel in linear
+/// Rec.709.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScatterMaps {
+    /// The inclinations.
+    pub nodes: Nodes,
+    /// Texels along a unicube face edge.
+    pub res: usize,
+    /// `rgb[node * texels + texel]`: share of the intercepted light that leaves through the texel,
+    /// in the node's frame.
+    pub rgb: Vec<[f32; 3]>,
+    /// `error[node * texels + texel]`: relative standard error of the undyed map, infinity where no
+    /// photon arrived.
+    pub error: Vec<f32>,
+    /// Absorption of the cortex per micrometer, linear R, G, B: what it was dyed with.
+    pub absorption_per_um: [f64; 3],
+    /// Mean radius of the fiber, micrometers.
+    pub radius_um: f64,
+    /// Ledger of the undyed level per node: photons, truncation and loss of the bake.
+    pub ledger: Vec<Ledger>,
+    /// Where the table comes from.
+    pub provenance: Provenance,
+}
+
+impl ScatterMaps {
+    /// Texels of one map.
+    pub fn texels(&self) -> usize {
+        6 * self.res * self.res
+    }
+
+    /// The map of one node.
+    pub fn map(&self, node: usize) -> &[[f32; 3]] {
+        let n = self.texels();
+        &self.rgb[node * n..(node + 1) * n]
+    }
+
+    /// Share of the intercepted light that leaves, for one node: the sum of its texels.
+    pub fn albedo(&self, node: usize) -> [f64; 3] {
+        self.map(node).iter().fold([0.0; 3], |sum, texel| {
+            std::array::from_fn(|c| sum[c] + f64::from(texel[c]))
+        })
+    }
+}
