@@ -44,7 +44,7 @@ pub fn face_of(w: DVec3) -> (usize, f64, f64) {
 
 /// Unit direction of plane coordinates on a face.
 pub fn direction_on(face: usize, x: f64, y: f64) -> DVec3 {
-    let one = if face % 2 == 0 { 1.0 } else { -1.0 };
+    let one = if face.is_multiple_of(2) { 1.0 } else { -1.0 };
     match face / 2 {
         0 => DVec3::new(one, x, y),
         1 => DVec3::new(x, one, y),

@@ -1,0 +1,186 @@
+//! Rough dielectric boundaries by a random walk on a GGX microsurface.
+//!
+//! The walk of Heitz, Hanika, d'Eon and Dachsbacher 2016 ("Multiple-scattering microfacet BSDFs with
+//! the Smith model"): no energy is lost at any roughness, and the result is reciprocal, which a
+//! single reflection with shadowing is not. Visible normals by spherical caps (Dupuy and Benyoub
+//! 2023).
+
+use crate::math::fresnel;
+use crate::sampling::Rng;
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// Where a photon goes at a boundary.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn {
+    /// New unit direction of travel.
+    pub dir: DVec3,
+    /// Whether it went through.
+    pub transmitted: bool,
+}
+
+/// Smooth boundary: Fresnel decides by one random number.
+///
+/// * `n`: unit normal against the ray. * `eta`: far index over near index.
+pub(super) fn smooth(dir: DVec3, n: DVec3, eta: f64, rng: &mut Rng) -> Turn {
+    let (reflectance, cos_t) = fresnel::dielectric((-dir.dot(n)).clamp(0.0, 1.0), eta);
+    if rng.uniform() < reflectance {
+        Turn {
+            dir: fresnel::reflect(dir, n).normalize(),
+            transmitted: false,
+        }
+    } else {
+        Turn {
+            dir: fresnel::refract(dir, n, eta, cos_t),
+            transmitted: true,
+        }
+    }
+}
+
+/// Rough boundary with GGX roughness `alpha` > 0. `None` if the walk does not end (not seen; the
+/// caller counts it as lost).
+pub(super) fn rough(dir: DVec3, n: DVec3, eta: f64, alpha: f64, rng: &mut Rng) -> Option<Turn> {
+    let (tangent, bitangent) = n.any_orthonormal_pair();
+    let mut d = DVec3::new(dir.dot(tangent), dir.dot(bitangent), dir.dot(n));
+    let mut above = true;
+    let mut height = TOP;
+    for _ in 0..MAX_STEPS {
+        // Below the surface the same walk runs upside down.
+        height = if above {
+            free_height(d, height, alpha, rng.uniform())
+        } else {
+            -free_height(-d, -height, alpha, rng.uniform())
+        };
+        if height.abs() == f64::INFINITY {
+            let dir = (d.x * tangent + d.y * bitangent + d.z * n).normalize();
+            return Some(Turn {
+                dir,
+                transmitted: !above,
+            });
+        }
+        let side = if above { 1.0 } else { -1.0 };
+        let ratio = if above { eta } else { 1.0 / eta };
+        let m = side * visible_normal(-side * d, alpha, rng);
+        let turn = smooth(d, m, ratio, rng);
+        d = turn.dir;
+        above ^= turn.transmitted;
+    }
+    None
+}
+
+/// Heights are uniform in [-1, 1]; the walk starts just below the top.
+const TOP: f64 = 0.998;
+
+/// A walk of this length does not happen: each step escapes with a probability near a half.
+const MAX_STEPS: usize = 256;
+
+/// The height at which a ray on the microsurface meets it next; infinite if it gets away.
+fn free_height(d: DVec3, height: f64, alpha: f64, u: f64) -> f64 {
+    if d.z > 0.9999 {
+        return f64::INFINITY;
+    }
+    let below = |h: f64| (0.5 * (h + 1.0)).clamp(0.0, 1.0);
+    let at = |share: f64| (2.0 * share - 1.0).clamp(-1.0, 1.0);
+    if d.z < -0.9999 {
+        return at(u * below(height));
+    }
+    if d.z.abs() < 1e-4 {
+        return height;
+    }
+    let lambda = lambda(d, alpha);
+    let escape = if d.z > 0.0 {
+        below(height).powf(lambda)
+    } else {
+        0.0
+    };
+    if u > 1.0 - escape {
+        return f64::INFINITY;
+    }
+    at(below(height) / (1.0 - u).powf(1.0 / lambda))
+}
+
+/// Smith's Lambda of GGX; negative for directions that point down.
+fn lambda(d: DVec3, alpha: f64) -> f64 {
+    let a = d.z / (alpha * d.x.hypot(d.y));
+    0.5 * (-1.0 + a.signum() * (1.0 + 1.0 / (a * a)).sqrt())
+}
+
+/// A microfacet normal visible from `w` (which may point below the horizon).
+fn visible_normal(w: DVec3, alpha: f64, rng: &mut Rng) -> DVec3 {
+    let v = DVec3::new(alpha * w.x, alpha * w.y, w.z).normalize();
+    let (sin_phi, cos_phi) = (TAU * rng.uniform()).sin_cos();
+    let z = (1.0 - rng.uniform()) * (1.0 + v.z) - v.z;
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    let h = DVec3::new(r * cos_phi, r * sin_phi, z) + v;
+    DVec3::new(alpha * h.x, alpha * h.y, h.z.max(1e-9)).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn from_angle(theta: f64) -> DVec3 {
+        DVec3::new(theta.sin(), 0.0, -theta.cos())
+    }
+
+    #[test]
+    fn every_photon_leaves_on_the_side_it_says() {
+        let mut rng = Rng::new(1, 0);
+        for alpha in [0.05, 0.3, 1.0] {
+            for eta in [1.55, 1.0 / 1.55] {
+                for i in 0..20_000 {
+                    let dir = from_angle(1.57 * f64::from(i) / 20_000.0);
+                    let turn = rough(dir, DVec3::Z, eta, alpha, &mut rng).unwrap();
+                    assert_eq!(turn.dir.z < 0.0, turn.transmitted);
+                    assert!((turn.dir.length() - 1.0).abs() < 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn nearly_smooth_is_smooth() {
+        let mut rng = Rng::new(2, 0);
+        let (reflectance, _) = fresnel::dielectric(0.5f64, 1.55);
+        let dir = from_angle(1.047_197_551_196_597_6);
+        let n = 200_000;
+        let (mut reflected, mut astray) = (0, 0);
+        for _ in 0..n {
+            let turn = rough(dir, DVec3::Z, 1.55, 0.001, &mut rng).unwrap();
+            if !turn.transmitted {
+                reflected += 1;
+                let mirror = fresnel::reflect(dir, DVec3::Z);
+                astray += i32::from((turn.dir - mirror).length() > 0.1);
+            }
+        }
+        // GGX has long tails, but only (alpha / 0.05)^2 of its normals tilt by more than 0.05.
+        assert!(astray < reflected / 500, "{astray} of {reflected}");
+        let sigma = (reflectance * (1.0 - reflectance) / f64::from(n)).sqrt();
+        assert!((f64::from(reflected) / f64::from(n) - reflectance).abs() < 4.0 * sigma);
+    }
+
+    /// Detailed balance of the rough boundary: the flux from a beam at angle a into a cone about b
+    /// equals the flux from b into a cone about a, times the cosines.
+    #[test]
+    fn reflection_is_reciprocal() {
+        let alpha = 0.5;
+        let cone = |from: f64, to: f64, stream: u64| {
+            let mut rng = Rng::new(3, stream);
+            let target = DVec3::new(-to.sin(), 0.0, to.cos());
+            let n = 400_000;
+            let hits = (0..n)
+                .filter(|_| {
+                    let turn = rough(from_angle(-from), DVec3::Z, 1.55, alpha, &mut rng);
+                    turn.is_some_and(|t| !t.transmitted && t.dir.dot(target) > 0.97)
+                })
+                .count();
+            hits as f64 / f64::from(n)
+        };
+        let (a, b) = (0.3f64, 1.0f64);
+        let (forward, back) = (cone(a, b, 0), cone(b, a, 1));
+        let sigma = (1.0 / (forward * 4e5) + 1.0 / (back * 4e5)).sqrt();
+        let ratio = forward * a.cos() / (back * b.cos());
+        // The cones have a width, over which the cosine varies: two percent beside the noise.
+        assert!((ratio - 1.0).abs() < 4.0 * sigma + 0.02, "{ratio} {sigma}");
+    }
+}
