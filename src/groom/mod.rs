@@ -1,10 +1,27 @@
 //! Strands of fur on a skin, in flat arrays.
 
+mod clump;
+mod error;
+mod follicle;
+mod plan;
+mod strand;
+#[cfg(test)]
+mod tests;
+
+pub use error::GroomError;
+pub use plan::{DEFAULT_STRANDS, MAX_CLASSES, MAX_STRANDS};
+
+use crate::progress::{Cancel, Progress};
+use crate::skin::Skin;
+use crate::species::Species;
+use follicle::Surface;
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+use strand::{CLASS_SHIFT, Grower};
 
 /// All strands. Strand `i` has control points `points[offsets[i]..offsets[i + 1]]`, at least two,
 /// root first; the curve is a Catmull-Rom spline pinned at both ends, through every point.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Groom {
     /// Control points, meters.
     pub points: Vec<Vec3>,
@@ -14,14 +31,21 @@ pub struct Groom {
     pub offsets: Vec<u32>,
     /// Hair class of each strand: index into `classes`.
     pub class: Vec<u8>,
-    /// Stable id of each strand: survives a change of density.
+    /// Stable id of each strand: survives a change of density. The top four bits are the class, the
+    /// rest is the rank in the class's blue-noise order: the strands of lowest rank form an evenly
+    /// thinned groom.
     pub id: Vec<u32>,
     /// Texture coordinates of each root.
     pub root_uv: Vec<Vec2>,
-    /// Arc length of each strand, meters.
+    /// Arc length of each strand along its control points, meters.
     pub length: Vec<f32>,
     /// Names of the hair classes.
     pub classes: Vec<String>,
+    /// Per class: factor on the natural diameter by which a thinned groom stays opaque; 1 at full
+    /// density.
+    pub width_scale: Vec<f32>,
+    /// Per class: number of follicles that the living animal would have on this skin.
+    pub natural: Vec<f64>,
 }
 
 impl Groom {
@@ -29,4 +53,104 @@ impl Groom {
     pub fn strands(&self) -> usize {
         self.class.len()
     }
+
+    /// Control points of strand `index`, root first.
+    pub fn strand(&self, index: usize) -> &[Vec3] {
+        &self.points[self.offsets[index] as usize..self.offsets[index + 1] as usize]
+    }
+}
+
+/// What the caller of [`grow`] chooses.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GroomSettings {
+    /// Strands in all; `None` for the natural number, at most [`DEFAULT_STRANDS`].
+    pub strands: Option<usize>,
+    /// Seed of everything random. The same seed and skin give nested grooms for any `strands`.
+    pub seed: u64,
+}
+
+/// Grows the fur of `species` on `skin`: strands sorted by class, then by rank.
+///
+/// The result is a function of the arguments alone, not of the number of threads. A groom of fewer
+/// strands is a subset of one with more: same ids, same curves; only widths differ, to keep the
+/// coat opaque.
+///
+/// # Errors
+/// [`GroomError`]: nothing to grow or nowhere to grow it, or `cancel` was set.
+pub fn grow(
+    skin: &Skin,
+    species: &Species,
+    settings: &GroomSettings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Groom, GroomError> {
+    let surface = Surface::new(skin)?;
+    let plan = plan::plan(skin, surface.weighted_area(), species, settings.strands)?;
+    let total: usize = plan.iter().map(|c| c.strands).sum();
+    progress.begin("growing fur", 2 * total as u64, "strands");
+    let scattered: Result<Vec<_>, GroomError> = plan
+        .par_iter()
+        .enumerate()
+        .map(|(class, plan)| {
+            let seed = follicle::class_seed(settings.seed, class);
+            surface.scatter(seed, plan.strands, progress, cancel)
+        })
+        .collect();
+    let scattered = scattered?;
+
+    let mut groom = Groom {
+        classes: species.classes.iter().map(|c| c.name.clone()).collect(),
+        width_scale: plan.iter().map(|c| c.width_scale as f32).collect(),
+        natural: plan.iter().map(|c| c.natural).collect(),
+        offsets: vec![0],
+        ..Groom::default()
+    };
+    for (class, follicles) in scattered.iter().enumerate() {
+        let width_scale = plan[class].width_scale;
+        let grower = Grower::new(
+            &species.classes[class].groom,
+            skin,
+            settings.seed,
+            width_scale,
+        );
+        let per_strand = grower.points();
+        let start = groom.points.len();
+        groom
+            .points
+            .resize(start + per_strand * follicles.len(), Vec3::ZERO);
+        groom.widths.resize(groom.points.len(), 0.0);
+        groom.points[start..]
+            .par_chunks_mut(per_strand)
+            .zip(groom.widths[start..].par_chunks_mut(per_strand))
+            .zip(follicles.par_iter().enumerate())
+            .with_min_len(1024)
+            .for_each(|((points, widths), (rank, follicle))| {
+                if rank % 1024 == 0 {
+                    progress.advance(1024.min(follicles.len() - rank) as u64);
+                }
+                let id = (class as u32) << CLASS_SHIFT | rank as u32;
+                if !cancel.is_cancelled() {
+                    grower.grow(id, &surface.root(follicle), points, widths);
+                }
+            });
+        if cancel.is_cancelled() {
+            return Err(GroomError::Cancelled);
+        }
+        for (rank, follicle) in follicles.iter().enumerate() {
+            let end = start + (rank + 1) * per_strand;
+            groom.offsets.push(end as u32);
+            groom.class.push(class as u8);
+            groom.id.push((class as u32) << CLASS_SHIFT | rank as u32);
+            groom.root_uv.push(surface.uv(follicle));
+            groom
+                .length
+                .push(arc_length(&groom.points[end - per_strand..end]));
+        }
+    }
+    progress.finish();
+    Ok(groom)
+}
+
+fn arc_length(points: &[Vec3]) -> f32 {
+    points.windows(2).map(|p| p[0].distance(p[1])).sum()
 }

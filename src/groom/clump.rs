@@ -1,0 +1,54 @@
+//! Tufts: hairs lean toward the nearest of a jittered grid of centers.
+
+use crate::sampling::hash64;
+use glam::{IVec3, Vec3};
+
+/// A tuft of hair.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clump {
+    /// Center, meters; near the skin but not on it.
+    pub(super) center: Vec3,
+    /// Four numbers in [-1, 1), the tuft's own.
+    pub(super) random: [f32; 4],
+}
+
+/// Distance over which tufts are laid out, and the seed of their jitter.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clumps {
+    /// Mean size of a tuft, meters.
+    pub(super) size: f32,
+    /// Seed.
+    pub(super) seed: u64,
+}
+
+impl Clumps {
+    /// The tuft that owns a point: the nearest center among those of the 27 cells around it.
+    pub(super) fn at(&self, position: Vec3) -> Clump {
+        let home = (position / self.size).floor().as_ivec3();
+        let mut best = (f32::INFINITY, Vec3::ZERO, 0);
+        for i in 0..27 {
+            let cell = home + IVec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+            let bits = self.bits(cell);
+            let center = (cell.as_vec3() + 0.5 + 0.5 * signed(bits).truncate()) * self.size;
+            let distance = center.distance_squared(position);
+            if distance < best.0 {
+                best = (distance, center, bits);
+            }
+        }
+        Clump {
+            center: best.1,
+            random: signed(hash64(best.2 ^ 0x5bd1_e995)).to_array(),
+        }
+    }
+
+    fn bits(&self, cell: IVec3) -> u64 {
+        let xy = u64::from(cell.x as u32) << 32 | u64::from(cell.y as u32);
+        hash64(hash64(xy ^ self.seed) ^ u64::from(cell.z as u32))
+    }
+}
+
+/// Four numbers in [-1, 1) from 64 bits.
+fn signed(bits: u64) -> glam::Vec4 {
+    let at = |shift: u32| ((bits >> shift) as u16) as f32 / 32_768.0 - 1.0;
+    glam::Vec4::new(at(0), at(16), at(32), at(48))
+}

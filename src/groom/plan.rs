@@ -1,0 +1,205 @@
+//! How many strands of each class, and how wide.
+
+use super::GroomError;
+use crate::skin::Skin;
+use crate::species::Species;
+
+/// Strands grown when nobody says how many, if the animal has more.
+pub const DEFAULT_STRANDS: usize = 250_000;
+
+/// Largest number of strands: offsets of up to 12 control points each stay below 2^32.
+pub const MAX_STRANDS: usize = 50_000_000;
+
+/// Largest number of hair classes: they share an id of 32 bits with the rank.
+pub const MAX_CLASSES: usize = 16;
+
+/// Share of a class in a thinned groom is its density to this power, so that few guard hairs over
+/// much undercoat still read as guard hair: 1 keeps nature's ratio (1 guard hair in 26 of a fox,
+/// nearly none in a preview), 0 gives every class the same number (no undercoat to look into).
+const CLASS_FLATTENING: f64 = 0.5;
+
+/// Layers of hair of one class, counted along the skin's normal, beyond which a coat looks no
+/// denser: what shines through is `exp(-layers)`. Fewer and the skin shows, more and the widened
+/// hairs look like straw.
+const OPAQUE_LAYERS: f64 = 2.5;
+
+/// Widest a hair may get by compensation. At 8 a guard hair of 75 um is 0.6 mm: beyond, straw.
+const MAX_WIDTH_SCALE: f64 = 6.0;
+
+/// What is grown of one class.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ClassPlan {
+    /// Strands to grow.
+    pub(super) strands: usize,
+    /// Strands that the living animal has there.
+    pub(super) natural: f64,
+    /// Factor on the diameter.
+    pub(super) width_scale: f64,
+}
+
+/// Divides `strands` (or the default) among the classes of `species` on a skin of `area_m2`
+/// (weighted by the density factor).
+pub(super) fn plan(
+    skin: &Skin,
+    area_m2: f64,
+    species: &Species,
+    strands: Option<usize>,
+) -> Result<Vec<ClassPlan>, GroomError> {
+    if species.classes.len() > MAX_CLASSES || species.classes.is_empty() {
+        return Err(GroomError::TooManyClasses {
+            classes: species.classes.len(),
+            limit: MAX_CLASSES,
+        });
+    }
+    for class in &species.classes {
+        check(&class.name, "density_per_cm2", class.groom.density_per_cm2)?;
+        check(&class.name, "length_mm", class.groom.length_mm)?;
+        check(&class.name, "diameter_um", class.groom.diameter_um)?;
+    }
+    let natural: Vec<f64> = species
+        .classes
+        .iter()
+        .map(|c| c.groom.density_per_cm2 * 1e4 * area_m2)
+        .collect();
+    let all: f64 = natural.iter().sum();
+    let total = strands.unwrap_or((all.round().max(1.0) as usize).min(DEFAULT_STRANDS));
+    if total == 0 {
+        return Err(GroomError::NoStrands);
+    }
+    if total > MAX_STRANDS {
+        return Err(GroomError::TooManyStrands {
+            asked: total,
+            limit: MAX_STRANDS,
+        });
+    }
+    check_spacing(skin, area_m2, total)?;
+    let counts = share(&natural, total);
+    Ok((0..counts.len())
+        .map(|i| {
+            let groom = &species.classes[i].groom;
+            let hair_area = groom.length_mm * 1e-3 * groom.diameter_um * 1e-6;
+            ClassPlan {
+                strands: counts[i],
+                natural: natural[i],
+                width_scale: width_scale(natural[i], counts[i], hair_area / area_m2),
+            }
+        })
+        .collect())
+}
+
+fn check(class: &str, field: &'static str, value: f64) -> Result<(), GroomError> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    Err(GroomError::BadClass {
+        class: class.to_owned(),
+        field,
+        value,
+        expected: "a finite number above 0",
+    })
+}
+
+fn check_spacing(skin: &Skin, area_m2: f64, strands: usize) -> Result<(), GroomError> {
+    let (lo, hi) = skin.bounds();
+    let size = f64::from(lo.abs().max(hi.abs()).max_element());
+    let resolution = 8.0 * size * f64::from(f32::EPSILON);
+    let spacing = (area_m2 / strands as f64).sqrt();
+    if spacing > resolution {
+        return Ok(());
+    }
+    Err(GroomError::TooDense {
+        skin: skin.name.clone(),
+        strands,
+        spacing_um: spacing * 1e6,
+        resolution_um: resolution * 1e6,
+    })
+}
+
+/// Divides `total` in proportion to `natural^CLASS_FLATTENING`, but gives no class more than it has
+/// by nature while another has less. Every count grows with `total`, so that grooms nest.
+fn share(natural: &[f64], total: usize) -> Vec<usize> {
+    let all: f64 = natural.iter().sum();
+    if total as f64 >= all {
+        return round_down_but_last(natural.iter().map(|n| n * total as f64 / all), total);
+    }
+    let mut counts = vec![None; natural.len()];
+    loop {
+        let settled: f64 = counts.iter().flatten().sum();
+        let open: f64 = (0..natural.len())
+            .filter(|&i| counts[i].is_none())
+            .map(|i| natural[i].powf(CLASS_FLATTENING))
+            .sum();
+        let per_weight = (total as f64 - settled) / open;
+        let full: Vec<usize> = (0..natural.len())
+            .filter(|&i| counts[i].is_none())
+            .filter(|&i| natural[i] <= per_weight * natural[i].powf(CLASS_FLATTENING))
+            .collect();
+        if full.is_empty() {
+            let shares = (0..natural.len())
+                .map(|i| counts[i].unwrap_or(per_weight * natural[i].powf(CLASS_FLATTENING)));
+            return round_down_but_last(shares, total);
+        }
+        for i in full {
+            counts[i] = Some(natural[i]);
+        }
+    }
+}
+
+/// Whole numbers that sum to `total`: all rounded down, the last class takes the rest. (Rounding
+/// each to the nearest would not always grow with the total.)
+fn round_down_but_last(shares: impl Iterator<Item = f64>, total: usize) -> Vec<usize> {
+    let mut counts: Vec<usize> = shares.map(|s| s as usize).collect();
+    if let Some(last) = counts.pop() {
+        let rest = total.saturating_sub(counts.iter().sum());
+        debug_assert!(rest.abs_diff(last) <= counts.len() + 1);
+        counts.push(rest);
+    }
+    counts
+}
+
+/// Factor on the diameter that keeps a coat of `grown` instead of `natural` hairs as opaque as it
+/// needs to be. `layer` is the share of the skin's area that one hair covers.
+///
+/// Widening by the full ratio would make a fox's guard hair a centimeter wide. But a coat of sixty
+/// layers looks no denser than one of three, so only [`OPAQUE_LAYERS`] are kept.
+fn width_scale(natural: f64, grown: usize, layer: f64) -> f64 {
+    let grown = grown.max(1) as f64;
+    let needed = (natural * layer).min(OPAQUE_LAYERS);
+    (needed / (grown * layer))
+        .clamp(1.0, MAX_WIDTH_SCALE)
+        .min((natural / grown).max(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_sum_grow_and_keep_guard_hair() {
+        let natural = [11_500.0, 288_500.0];
+        let mut last = vec![0, 0];
+        for total in (1..400_000).step_by(997) {
+            let counts = share(&natural, total);
+            assert_eq!(counts.iter().sum::<usize>(), total);
+            assert!(counts[0] >= last[0] && counts[1] >= last[1], "{total}");
+            last = counts;
+        }
+        let thin = share(&natural, 3_000);
+        assert!((400..700).contains(&thin[0]), "{thin:?}");
+        assert_eq!(share(&natural, 300_000)[0], 11_500);
+    }
+
+    #[test]
+    fn widths_compensate_only_as_far_as_needed() {
+        // 10 natural layers, all there: natural width.
+        assert_eq!(width_scale(1e6, 1_000_000, 1e-5), 1.0);
+        // Half of 10 layers is still opaque.
+        assert_eq!(width_scale(1e6, 500_000, 1e-5), 1.0);
+        // A tenth is 1 layer: 2.5 are needed.
+        assert!((width_scale(1e6, 100_000, 1e-5) - 2.5).abs() < 1e-12);
+        // A sparse coat (0.1 layers) keeps its covered area exactly: linear.
+        assert!((width_scale(1e4, 5_000, 1e-5) - 2.0).abs() < 1e-12);
+        // Previews are capped.
+        assert_eq!(width_scale(1e6, 100, 1e-5), MAX_WIDTH_SCALE);
+    }
+}
