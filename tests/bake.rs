@@ -1,5 +1,7 @@
 //! The bake keeps its books, loses no light and does not depend on threads.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use vair::bake::{Settings, bake};
 use vair::fiber::Fiber;
 use vair::progress::{Cancel, Silent};
