@@ -22,17 +22,33 @@ fn cylinder() -> Structure {
             roughness: 0.0,
             riser_roughness: 0.0,
         },
-        medulla: Medulla { ratio: 0.0, kind: MedullaKind::None, void_ior: 1.0003, pigment: 1.0 },
+        medulla: Medulla {
+            ratio: 0.0,
+            kind: MedullaKind::None,
+            void_ior: 1.0003,
+            pigment: 1.0,
+        },
     }
 }
 
 fn run(structure: &Structure, settings: &Settings) -> StructureTable {
     let fiber = Fiber::build(structure, settings.seed).unwrap();
-    bake(&fiber, settings, Provenance::default(), &Silent, &Cancel::default()).unwrap().table
+    bake(
+        &fiber,
+        settings,
+        Provenance::default(),
+        &Silent,
+        &Cancel::default(),
+    )
+    .unwrap()
+    .table
 }
 
 fn small(settings: Settings) -> Settings {
-    Settings { photons: 400_000, ..settings }
+    Settings {
+        photons: 400_000,
+        ..settings
+    }
 }
 
 #[test]
@@ -55,17 +71,27 @@ fn a_clear_cylinder_returns_everything() {
     let table = run(&cylinder(), &small(Settings::cone()));
     for node in 0..table.nodes.len() {
         assert_eq!(table.ledger(node, 0).lost, 0);
-        assert!(table.albedo(node, 0) > 1.0 - 1e-4, "{node}: {}", table.albedo(node, 0));
+        assert!(
+            table.albedo(node, 0) > 1.0 - 1e-4,
+            "{node}: {}",
+            table.albedo(node, 0)
+        );
     }
 }
 
 #[test]
 fn same_bytes_for_any_number_of_threads() {
-    let settings = Settings { photons: 100_000, ..Settings::cone() };
+    let settings = Settings {
+        photons: 100_000,
+        ..Settings::cone()
+    };
     let tables: Vec<_> = [1, 2, 7]
         .into_iter()
         .map(|threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
             pool.install(|| run(&cylinder(), &settings))
         })
         .collect();

@@ -5,18 +5,21 @@
 //! follow the same paths, so the direction that a photon comes from is the one the renderer will ask
 //! about and the texels are the directions it will sample.
 
+mod cache;
 mod content;
 mod microfacet;
 mod photon;
 mod tally;
 
+pub use cache::{Cache, CacheSize};
 pub use content::content_hash;
 pub use photon::{End, Flight, Photon, fly};
 
 use crate::blame::Blame;
-use crate::fiber::Fiber;
+use crate::fiber::{Fiber, FiberError};
 use crate::math::unicube::Unicube;
 use crate::progress::{Cancel, Progress};
+use crate::species::Structure;
 use crate::table::{Mode, Nodes, Provenance, StructureTable};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -76,7 +79,7 @@ impl Settings {
 pub fn absorption_levels(count: usize) -> Vec<f64> {
     std::iter::once(0.0)
         .chain((0..).map(|k| 0.0125 * f64::from(1u32 << k)))
-        .take(count.clamp(1, 24))
+        .take(count.clamp(1, tally::MAX_LEVELS))
         .collect()
 }
 
@@ -93,6 +96,9 @@ pub enum BakeError {
         /// The allowed range.
         expected: &'static str,
     },
+    /// The fiber cannot be built.
+    #[error(transparent)]
+    Fiber(#[from] FiberError),
     /// Stopped before every direction had been covered once.
     #[error("stopped before the first pass over all directions was complete; nothing was kept")]
     Stopped,
@@ -103,6 +109,7 @@ impl BakeError {
     pub fn blame(&self) -> Blame {
         match self {
             Self::Setting { .. } => Blame::Input,
+            Self::Fiber(_) => Blame::Input,
             Self::Stopped => Blame::Interrupted,
         }
     }
@@ -191,13 +198,50 @@ pub fn bake(
         radius_um: 0.5 * fiber.structure().diameter_um,
         flux: tallies.iter().flat_map(Tally::flux).collect(),
         error: tallies.iter().flat_map(Tally::error).collect(),
-        ledger: tallies
-            .iter()
-            .flat_map(|t| t.ledger.iter().copied())
-            .collect(),
+        ledger: tallies.iter().flat_map(Tally::ledger).collect(),
         provenance,
     };
     Ok(Baked { table, complete })
+}
+
+/// The table of a structure from the cache, or a bake of it that is then kept there.
+///
+/// A stopped bake is returned but not kept. A cache that cannot be written to costs the next bake
+/// its time and is no error.
+pub fn find_or_bake(
+    structure: &Structure,
+    settings: &Settings,
+    provenance: Provenance,
+    cache: Option<&Cache>,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Baked, BakeError> {
+    check(settings)?;
+    let content = content_hash(structure, settings);
+    if let Some(table) = cache.and_then(|cache| cache.get(&content)) {
+        // The same fiber may have been baked for another species: the table keeps its numbers and
+        // takes the new name.
+        let provenance = Provenance {
+            species: provenance.species,
+            class: provenance.class,
+            station: provenance.station,
+            species_text: provenance.species_text,
+            ..table.provenance
+        };
+        return Ok(Baked {
+            table: StructureTable {
+                provenance,
+                ..table
+            },
+            complete: true,
+        });
+    }
+    let fiber = Fiber::build(structure, settings.seed)?;
+    let baked = bake(&fiber, settings, provenance, progress, cancel)?;
+    if let (true, Some(cache)) = (baked.complete, cache) {
+        let _ = cache.put(&baked.table);
+    }
+    Ok(baked)
 }
 
 /// Part `index` of `total` split into `parts` as evenly as integers allow.

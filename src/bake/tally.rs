@@ -3,66 +3,95 @@
 use crate::math::unicube::Unicube;
 use crate::table::{Ledger, PHOTON};
 
+/// Most absorption levels a tally holds.
+pub(super) const MAX_LEVELS: usize = 24;
+
 /// Where the photons of one node went, per absorption level, in units of 2^-32 photon.
+///
+/// What was absorbed is summed photon by photon and what escaped is the sum of the texels: that
+/// they add up to what was emitted is a check, not a definition.
 #[derive(Clone, Debug)]
 pub(super) struct Tally {
     levels: usize,
     /// `texels[texel * levels + level]`: a photon touches one contiguous run.
     texels: Vec<u64>,
-    pub(super) ledger: Vec<Ledger>,
+    photons: u64,
+    absorbed: [u64; MAX_LEVELS],
+    truncated: [u64; MAX_LEVELS],
+    lost: [u64; MAX_LEVELS],
 }
 
 impl Tally {
     pub(super) fn new(texels: usize, levels: usize) -> Self {
+        debug_assert!((1..=MAX_LEVELS).contains(&levels));
+        let zero = [0; MAX_LEVELS];
+        let texels = vec![0; texels * levels];
         Self {
             levels,
-            texels: vec![0; texels * levels],
-            ledger: vec![Ledger::default(); levels],
+            texels,
+            photons: 0,
+            absorbed: zero,
+            truncated: zero,
+            lost: zero,
         }
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.ledger[0].emitted == 0
+        self.photons == 0
     }
 
     /// A photon left through `texel` after an optical path of `path` radii of pigment.
     pub(super) fn escape(&mut self, texel: usize, path: f64, levels: &[f64]) {
+        let weights = self.arrive(path, levels);
         let run = &mut self.texels[texel * self.levels..(texel + 1) * self.levels];
-        for_each_level(path, levels, |k, weight| {
-            run[k] += weight;
-            self.ledger[k].emitted += PHOTON;
-            self.ledger[k].escaped += weight;
-            self.ledger[k].absorbed += PHOTON - weight;
-        });
+        for (sum, weight) in run.iter_mut().zip(weights) {
+            *sum += weight;
+        }
     }
 
+    /// A photon was given up.
     pub(super) fn truncate(&mut self, path: f64, levels: &[f64]) {
-        for_each_level(path, levels, |k, weight| {
-            self.ledger[k].emitted += PHOTON;
-            self.ledger[k].truncated += weight;
-            self.ledger[k].absorbed += PHOTON - weight;
-        });
+        let weights = self.arrive(path, levels);
+        add(&mut self.truncated, &weights);
     }
 
+    /// A photon found no boundary.
     pub(super) fn lose(&mut self, path: f64, levels: &[f64]) {
-        for_each_level(path, levels, |k, weight| {
-            self.ledger[k].emitted += PHOTON;
-            self.ledger[k].lost += weight;
-            self.ledger[k].absorbed += PHOTON - weight;
-        });
+        let weights = self.arrive(path, levels);
+        add(&mut self.lost, &weights);
+    }
+
+    /// Books a photon and what pigment took of it; returns what is left at each level.
+    fn arrive(&mut self, path: f64, levels: &[f64]) -> [u64; MAX_LEVELS] {
+        self.photons += 1;
+        let weights = weights(path, levels);
+        for (absorbed, weight) in self.absorbed.iter_mut().zip(&weights).take(levels.len()) {
+            *absorbed += PHOTON - weight;
+        }
+        weights
     }
 
     pub(super) fn add(&mut self, other: &Self) {
         for (a, b) in self.texels.iter_mut().zip(&other.texels) {
             *a += b;
         }
-        for (a, b) in self.ledger.iter_mut().zip(&other.ledger) {
-            a.emitted += b.emitted;
-            a.escaped += b.escaped;
-            a.absorbed += b.absorbed;
-            a.truncated += b.truncated;
-            a.lost += b.lost;
-        }
+        self.photons += other.photons;
+        add(&mut self.absorbed, &other.absorbed);
+        add(&mut self.truncated, &other.truncated);
+        add(&mut self.lost, &other.lost);
+    }
+
+    /// The books, per level.
+    pub(super) fn ledger(&self) -> Vec<Ledger> {
+        (0..self.levels)
+            .map(|k| Ledger {
+                emitted: self.photons * PHOTON,
+                escaped: self.texels.iter().skip(k).step_by(self.levels).sum(),
+                absorbed: self.absorbed[k],
+                truncated: self.truncated[k],
+                lost: self.lost[k],
+            })
+            .collect()
     }
 
     /// Averages the map with its mirror image phi -> -phi. The sum stays exact: an odd unit goes to
@@ -84,8 +113,8 @@ impl Tally {
     /// Flux fractions, level by level.
     pub(super) fn flux(&self) -> Vec<f32> {
         let mut flux = Vec::with_capacity(self.texels.len());
+        let scale = 1.0 / (self.photons as f64 * PHOTON as f64);
         for k in 0..self.levels {
-            let scale = 1.0 / self.ledger[k].emitted as f64;
             flux.extend(
                 self.texels
                     .iter()
@@ -108,17 +137,24 @@ impl Tally {
     }
 }
 
-/// Calls `f` with the fixed-point weight `exp(-level * path)` of every level. Levels from the second
-/// on are a geometric series of ratio 2, so each weight is the square of the one before.
-#[inline]
-fn for_each_level(path: f64, levels: &[f64], mut f: impl FnMut(usize, u64)) {
-    f(0, PHOTON);
-    let Some(&first) = levels.get(1) else { return };
-    let mut weight = (-first * path).exp();
-    for k in 1..levels.len() {
-        f(k, (weight * PHOTON as f64) as u64);
-        weight *= weight;
+fn add(a: &mut [u64; MAX_LEVELS], b: &[u64; MAX_LEVELS]) {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a += b;
     }
+}
+
+/// The fixed-point weight `exp(-level * path)` of every level. Levels from the second on are a
+/// geometric series of ratio 2, so each weight is the square of the one before.
+#[inline]
+fn weights(path: f64, levels: &[f64]) -> [u64; MAX_LEVELS] {
+    let mut weights = [0; MAX_LEVELS];
+    weights[0] = PHOTON;
+    let mut share = levels.get(1).map_or(0.0, |first| (-first * path).exp());
+    for weight in weights.iter_mut().take(levels.len()).skip(1) {
+        *weight = (share * PHOTON as f64) as u64;
+        share *= share;
+    }
+    weights
 }
 
 #[cfg(test)]
@@ -140,14 +176,14 @@ mod tests {
             }
         }
         tally.fold(&cube);
-        for (k, l) in tally.ledger.iter().enumerate() {
+        for l in tally.ledger() {
             assert_eq!(l.emitted, l.escaped + l.absorbed + l.truncated + l.lost);
-            let sum: u64 = tally.texels.iter().skip(k).step_by(levels.len()).sum();
-            assert_eq!(sum, l.escaped);
+            assert!(l.truncated > 0 && l.lost > 0);
         }
-        for_each_level(0.7, &levels, |k, weight| {
-            let exact = (-levels[k] * 0.7).exp();
+        let weights = weights(0.7, &levels);
+        for (level, weight) in levels.iter().zip(weights) {
+            let exact = (-level * 0.7).exp();
             assert!((weight as f64 / PHOTON as f64 - exact).abs() < 1e-9);
-        });
+        }
     }
 }

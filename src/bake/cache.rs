@@ -1,0 +1,100 @@
+//! Baked tables by content: a bake with the same structure and settings is never done twice.
+
+use crate::table::{StructureTable, TableError};
+use std::path::{Path, PathBuf};
+
+/// A folder of tables named by their content hash.
+#[derive(Clone, Debug)]
+pub struct Cache {
+    folder: PathBuf,
+}
+
+/// What is in a cache.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CacheSize {
+    /// Number of tables.
+    pub tables: u64,
+    /// Their size on disk.
+    pub bytes: u64,
+}
+
+impl Cache {
+    /// The user's cache: `VAIR_CACHE` if set, else `vair` in the system's cache folder. `None` where
+    /// the system has none.
+    pub fn of_user() -> Option<Self> {
+        let folder = match std::env::var_os("VAIR_CACHE") {
+            Some(folder) if !folder.is_empty() => PathBuf::from(folder),
+            _ => dirs::cache_dir()?.join("vair"),
+        };
+        Some(Self { folder })
+    }
+
+    /// A cache in a given folder, made when first written to.
+    pub fn at(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+        }
+    }
+
+    /// Where the tables are.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The table of a content hash, if there is a whole one that says it is that.
+    pub fn get(&self, content: &str) -> Option<StructureTable> {
+        let table = StructureTable::read(&self.path(content)).ok()?;
+        (table.provenance.content == content).then_some(table)
+    }
+
+    /// Stores a finished table.
+    pub fn put(&self, table: &StructureTable) -> Result<(), TableError> {
+        // If the folder cannot be made, writing into it fails with the path and the reason.
+        let _ = std::fs::create_dir_all(&self.folder);
+        table.write(&self.path(&table.provenance.content))
+    }
+
+    /// Counts the tables.
+    pub fn size(&self) -> CacheSize {
+        let mut size = CacheSize::default();
+        for (_, bytes) in self.entries() {
+            size.tables += 1;
+            size.bytes += bytes;
+        }
+        size
+    }
+
+    /// Removes all tables and says what was removed.
+    pub fn clear(&self) -> CacheSize {
+        let mut removed = CacheSize::default();
+        for (path, bytes) in self.entries() {
+            if std::fs::remove_file(path).is_ok() {
+                removed.tables += 1;
+                removed.bytes += bytes;
+            }
+        }
+        removed
+    }
+
+    fn path(&self, content: &str) -> PathBuf {
+        self.folder.join(format!("{content}.exr"))
+    }
+
+    /// Paths and sizes of the tables; nothing else in the folder is looked at.
+    fn entries(&self) -> Vec<(PathBuf, u64)> {
+        let Ok(entries) = std::fs::read_dir(&self.folder) else {
+            return Vec::new();
+        };
+        let is_table = |path: &Path| {
+            let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or("");
+            path.extension().is_some_and(|e| e == "exr")
+                && stem.len() == 64
+                && stem.bytes().all(|b| b.is_ascii_hexdigit())
+        };
+        entries
+            .filter_map(Result::ok)
+            .filter(|entry| is_table(&entry.path()))
+            .map(|entry| (entry.path(), entry.metadata().map_or(0, |m| m.len())))
+            .collect()
+    }
+}
