@@ -4,6 +4,7 @@
 //! level; dyeing it with a pigment gives [`ScatterMaps`] of linear RGB.
 
 mod check;
+mod dye;
 mod error;
 mod exr;
 mod maps;
