@@ -6,6 +6,7 @@
 
 mod console;
 mod failure;
+mod table;
 
 pub use console::Console;
 pub use failure::Failure;
@@ -25,7 +26,10 @@ struct Cli {
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {}
+enum Command {
+    /// Look into scattering tables, dye them, draw them.
+    Table(table::Args),
+}
 
 /// Parses the command line, runs the command and returns the exit code.
 pub fn run() -> ExitCode {
@@ -48,6 +52,8 @@ pub fn run() -> ExitCode {
     }
 }
 
-fn dispatch(command: Command, _console: &Console) -> Result<(), Failure> {
-    match command {}
+fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
+    match command {
+        Command::Table(args) => table::run(&args, console),
+    }
 }

@@ -59,6 +59,15 @@ impl Nodes {
         self.centers.is_empty()
     }
 
+    /// The node that part `bin` of a table file holds: the paper's count in paper mode, else the
+    /// node of the same number. Its own inverse.
+    pub fn node_of_part(&self, bin: usize) -> usize {
+        match self.mode {
+            Mode::Paper => self.len() - 1 - bin,
+            Mode::Cone => bin,
+        }
+    }
+
     /// The bin that holds inclination `theta`.
     pub fn bin(&self, theta: f64) -> usize {
         match self.mode {

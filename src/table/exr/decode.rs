@@ -2,7 +2,7 @@
 
 use super::attributes::Attributes;
 use super::parts::Part;
-use super::{FORMAT, TableFile, level_channel, node_of_part};
+use super::{FORMAT, TableFile, level_channel};
 use crate::table::{Ledger, Mode, Nodes, Provenance, ScatterMaps, StructureTable, TableError};
 use std::f64::consts::FRAC_PI_2;
 
@@ -46,8 +46,8 @@ pub(super) fn table(parts: Vec<Part>) -> Result<TableFile, TableError> {
         }
     }
     // From here on everything is by node.
-    let mut by_node: Vec<Part> = parts;
-    if node_of_part(mode, bins, 0) != 0 {
+    let mut by_node = parts;
+    if mode == Mode::Paper {
         by_node.reverse();
     }
     let nodes = nodes(mode, &by_node)?;

@@ -2,7 +2,7 @@
 
 use super::attributes::Attributes;
 use super::parts::Part;
-use super::{FORMAT, level_channel, node_of_part};
+use super::{FORMAT, level_channel};
 use crate::table::{Ledger, Mode, Nodes, PHOTON, Provenance, ScatterMaps, StructureTable};
 
 /// The parts of a structure table.
@@ -61,7 +61,7 @@ fn parts(
 ) -> Vec<Part> {
     let mut parts: Vec<Part> = (0..nodes.len())
         .map(|bin| {
-            let node = node_of_part(nodes.mode, nodes.len(), bin);
+            let node = nodes.node_of_part(bin);
             let mut attributes = Attributes::default();
             attributes.double("theta_deg", nodes.centers[node].to_degrees());
             attributes.double("theta_from_deg", nodes.edges[node].to_degrees());

@@ -9,7 +9,7 @@ mod decode;
 mod encode;
 mod parts;
 
-use super::{Mode, ScatterMaps, StructureTable, TableError};
+use super::{ScatterMaps, StructureTable, TableError};
 use crate::io::{AtomicFile, read_bounded};
 use std::path::Path;
 
@@ -84,15 +84,6 @@ impl ScatterMaps {
         self.check()?;
         let bytes = parts::encode(encode::scatter(self), path)?;
         Ok(AtomicFile::write_all_to(path, &bytes)?)
-    }
-}
-
-/// The node that part `bin` holds. The paper counts its bins from the tip (alpha = 0), nodes
-/// ascend in theta.
-pub(super) fn node_of_part(mode: Mode, bins: usize, bin: usize) -> usize {
-    match mode {
-        Mode::Paper => bins - 1 - bin,
-        Mode::Cone => bin,
     }
 }
 

@@ -3,6 +3,7 @@
 use super::*;
 use crate::blame::Blame;
 use crate::sampling::Rng;
+use crate::table::Mode;
 use crate::table::{Ledger, Nodes, PHOTON, Provenance};
 
 /// A small table with arbitrary content that keeps every rule.

@@ -1,0 +1,82 @@
+//! `vair table dye`: pigment for a structure table.
+
+use crate::cli::{Console, Failure};
+use crate::species::PigmentBand;
+use crate::table::StructureTable;
+use std::path::PathBuf;
+
+/// Options of `vair table dye`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:\n  \
+    vair table dye fox.exr -o fox-red.exr --eumelanin 0.3 --pheomelanin 1.2\n  \
+    vair table dye fox.exr -o fox-blue.exr --absorption 0.05,0.02,0.001")]
+pub(super) struct Args {
+    /// The structure table.
+    file: PathBuf,
+    /// The dyed table to write.
+    #[arg(long, short)]
+    output: PathBuf,
+    #[command(flatten)]
+    pigment: Pigment,
+}
+
+/// A pigment: melanin or bare absorption.
+#[derive(Debug, clap::Args)]
+pub(super) struct Pigment {
+    /// Eumelanin (brown to black) in the units of hair shaders, for a fiber of 40 um radius.
+    #[arg(long, value_name = "C", conflicts_with = "absorption")]
+    eumelanin: Option<f64>,
+    /// Pheomelanin (yellow to red), same units.
+    #[arg(long, value_name = "C", conflicts_with = "absorption")]
+    pheomelanin: Option<f64>,
+    /// Absorption of the cortex per micrometer for linear red, green and blue.
+    #[arg(long, value_name = "R,G,B", value_parser = parse_rgb)]
+    absorption: Option<[f64; 3]>,
+}
+
+impl Pigment {
+    /// Absorption per micrometer; `None` if no option was given.
+    pub(super) fn absorption_per_um(&self) -> Option<[f64; 3]> {
+        if self.eumelanin.is_some() || self.pheomelanin.is_some() {
+            let band = PigmentBand {
+                to_mm: f64::INFINITY,
+                softness_mm: 0.0,
+                eumelanin: self.eumelanin.unwrap_or(0.0),
+                pheomelanin: self.pheomelanin.unwrap_or(0.0),
+            };
+            return Some(band.absorption_per_um());
+        }
+        self.absorption
+    }
+}
+
+pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
+    let absorption = args.pigment.absorption_per_um().ok_or_else(|| {
+        Failure::with_help(
+            crate::blame::Blame::Input,
+            "no pigment was given",
+            "use --eumelanin and --pheomelanin, or --absorption R,G,B",
+        )
+    })?;
+    crate::io::check_writable(&args.output)?;
+    let maps = StructureTable::read(&args.file)?.dye(absorption)?;
+    maps.write(&args.output)?;
+    console.say(format_args!(
+        "dyed with {:.6} {:.6} {:.6} per um: {}",
+        absorption[0],
+        absorption[1],
+        absorption[2],
+        args.output.display()
+    ));
+    Ok(())
+}
+
+/// `R,G,B` or a single number for all three.
+fn parse_rgb(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|w| w.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok([all]) => Ok([*all; 3]),
+        Ok([r, g, b]) => Ok([*r, *g, *b]),
+        _ => Err("expected three numbers separated by commas".to_owned()),
+    }
+}

@@ -1,0 +1,37 @@
+//! `vair table`: what is in a table, dye it, draw it.
+
+mod dye;
+mod info;
+
+use super::{Console, Failure};
+use crate::table::TableError;
+use clap::Subcommand;
+
+/// Options of `vair table`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Print everything that a table file says about itself.
+    Info(info::Args),
+    /// Give a structure table a pigment: absorption levels become linear RGB.
+    Dye(dye::Args),
+}
+
+/// Runs `vair table`.
+pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
+    match &args.command {
+        Command::Info(args) => info::run(args),
+        Command::Dye(args) => dye::run(args, console),
+    }
+}
+
+impl From<TableError> for Failure {
+    fn from(error: TableError) -> Self {
+        Self::new(error.blame(), error)
+    }
+}
