@@ -1,5 +1,118 @@
 //! Species presets: what an animal's hairs are made of, and where each number comes from.
+//!
+//! A file is read in two passes that collect every problem: types, ranges and origins against the
+//! field descriptions, then the rules that join several values. Overrides change the document before
+//! the first pass, so they meet the same rules.
 
+mod build;
+mod check;
+mod error;
+mod fields;
+mod library;
 pub mod model;
+mod origin;
+mod overrides;
+mod schema;
+mod shape;
+mod tree;
 
+pub use error::{Place, Problem, SpeciesError, SpeciesErrors};
+pub use library::{LIBRARY, ids};
 pub use model::*;
+pub use origin::{Cited, Origin, Origins, Reference};
+pub use schema::json_schema;
+
+use crate::io::{FileError, read_bounded};
+use error::{Problems, closest};
+use std::io::{Error, ErrorKind};
+use std::path::Path;
+
+/// Longest species file, bytes. The built-in ones have about 10 kB.
+const FILE_LIMIT: u64 = 4 << 20;
+
+/// Loads a species.
+///
+/// * `name_or_path`: id of a built-in species, or a path that ends in `.toml`.
+/// * `overrides`: `key.path=value` each, applied in order.
+///
+/// # Errors
+/// An unknown name, an unreadable file, or everything that is wrong with the file and the overrides.
+pub fn load(name_or_path: &str, overrides: &[String]) -> Result<Species, SpeciesError> {
+    load_with_origins(name_or_path, overrides).map(|(species, _)| species)
+}
+
+/// As [`load`], with the origin of every number.
+pub fn load_with_origins(
+    name_or_path: &str,
+    overrides: &[String],
+) -> Result<(Species, Origins), SpeciesError> {
+    if let Some(text) = library::text_of(name_or_path) {
+        let file = format!("{name_or_path}.toml");
+        return Ok(parse(text, name_or_path, &file, overrides)?);
+    }
+    let path = Path::new(name_or_path);
+    let is_file = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+    if !is_file {
+        return Err(unknown_name(name_or_path));
+    }
+    let bytes = read_bounded(path, FILE_LIMIT)?;
+    let text = String::from_utf8(bytes).map_err(|e| {
+        let byte = e.utf8_error().valid_up_to();
+        let reason = format!("it is not UTF-8 text: byte {byte} is no character");
+        FileError::new("read", path, Error::new(ErrorKind::InvalidData, reason))
+    })?;
+    let id = path
+        .file_stem()
+        .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    Ok(parse(&text, &id, name_or_path, overrides)?)
+}
+
+/// Reads the text of a species file.
+///
+/// * `id`: id of the species; `file`: name of the file for messages.
+///
+/// # Errors
+/// Everything that is wrong with the text and the overrides.
+pub fn parse(
+    text: &str,
+    id: &str,
+    file: &str,
+    overrides: &[String],
+) -> Result<(Species, Origins), SpeciesErrors> {
+    let mut problems = Problems::default();
+    let refuse = |problems: Problems| match problems.finish(file, text, overrides) {
+        Err(errors) => errors,
+        Ok(()) => SpeciesErrors::unexplained(file, text, overrides),
+    };
+    let mut root = match tree::parse(text) {
+        Ok(root) => root,
+        Err((message, span)) => {
+            problems.push(&Place::File(span), format!("not TOML: {message}"), None);
+            return Err(refuse(problems));
+        }
+    };
+    overrides::apply(&mut root, overrides, &mut problems);
+    let (checked, origins) = check::check(&root, &mut problems);
+    let full_text = format!("{text}{}", overrides::as_comments(overrides));
+    match build::build(&checked, id, full_text, &mut problems) {
+        Some(species) if problems.is_empty() => Ok((species, origins)),
+        _ => Err(refuse(problems)),
+    }
+}
+
+fn unknown_name(name: &str) -> SpeciesError {
+    let known = ids().collect::<Vec<_>>().join(", ");
+    let hint = match closest(name, ids()) {
+        Some(one) => format!("did you mean {one}? Built in are {known}"),
+        None if Path::new(name).is_file() => {
+            format!("the name of a species file ends in .toml. Built in are {known}")
+        }
+        None => format!("built in are {known}; or give the path of a .toml file"),
+    };
+    SpeciesError::UnknownName {
+        name: name.to_owned(),
+        hint,
+    }
+}

@@ -1,0 +1,95 @@
+//! How a hair class grows.
+
+use super::{Reader, number, numbers, place_of};
+use crate::species::check::Checked;
+use crate::species::model::ClassGroom;
+
+/// A hair shorter than this many diameters is not a hair.
+const SHORTEST: f64 = 20.0;
+
+impl Reader<'_> {
+    /// The groom of a class from its table.
+    pub(super) fn groom(&mut self, table: &Checked) -> Option<ClassGroom> {
+        self.length(table);
+        self.profile(table);
+        self.crimp(table);
+        Some(ClassGroom {
+            density_per_cm2: number(table, "density_per_cm2")?,
+            length_mm: number(table, "length_mm")?,
+            length_sigma: number(table, "length_sigma")?,
+            diameter_um: number(table, "diameter_um")?,
+            diameter_sigma: number(table, "diameter_sigma")?,
+            stalk: number(table, "stalk")?,
+            shield: numbers(table, "shield")?.try_into().ok()?,
+            taper_from: number(table, "taper_from")?,
+            emergence_deg: number(table, "emergence_deg")?,
+            bend_deg: number(table, "bend_deg")?,
+            stray_deg: number(table, "stray_deg")?,
+            crimp_mm: number(table, "crimp_mm")?,
+            crimp_wavelength_mm: number(table, "crimp_wavelength_mm")?,
+            clump: number(table, "clump")?,
+            clump_mm: number(table, "clump_mm")?,
+        })
+    }
+
+    fn length(&mut self, table: &Checked) {
+        let (Some(length), Some(diameter)) =
+            (number(table, "length_mm"), number(table, "diameter_um"))
+        else {
+            return;
+        };
+        let least = SHORTEST * diameter * 1e-3;
+        if length < least {
+            let path = table.path_of("length_mm");
+            let message = format!(
+                "`{path}` is {length}, expected at least {least:.3} mm: {SHORTEST} times the diameter"
+            );
+            self.conflict(
+                place_of(table, "length_mm"),
+                message,
+                "lengths are in mm, diameters in um",
+            );
+        }
+    }
+
+    fn profile(&mut self, table: &Checked) {
+        let Some(shield) = numbers(table, "shield") else {
+            return;
+        };
+        let (Some(from), Some(to)) = (shield.first(), shield.get(1)) else {
+            return;
+        };
+        if from >= to {
+            let path = table.path_of("shield");
+            let message = format!("`{path}` is [{from}, {to}], expected two ascending numbers");
+            let hint = "where the stalk begins to widen, and where it is widest";
+            self.conflict(place_of(table, "shield"), message, hint);
+        }
+        if let Some(taper) = number(table, "taper_from")
+            && taper < *to
+        {
+            let path = table.path_of("taper_from");
+            let message = format!("`{path}` is {taper}, expected at least the shield's {to}");
+            let hint = "the tip tapers from the widest place on";
+            self.conflict(place_of(table, "taper_from"), message, hint);
+        }
+    }
+
+    fn crimp(&mut self, table: &Checked) {
+        let (Some(amplitude), Some(wavelength)) = (
+            number(table, "crimp_mm"),
+            number(table, "crimp_wavelength_mm"),
+        ) else {
+            return;
+        };
+        if amplitude > 0.5 * wavelength {
+            let path = table.path_of("crimp_mm");
+            let message = format!(
+                "`{path}` is {amplitude}, expected at most {} mm: half of the wavelength",
+                0.5 * wavelength
+            );
+            let hint = "steeper waves would cross themselves";
+            self.conflict(place_of(table, "crimp_mm"), message, hint);
+        }
+    }
+}

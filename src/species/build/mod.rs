@@ -1,0 +1,139 @@
+//! Second pass over a species file: from checked values to a [`Species`], with the rules that join
+//! several values. Reports what is missing or contradicts itself; goes on after each problem.
+
+mod groom;
+mod pigment;
+mod structure;
+
+use super::check::{Checked, Item, Value};
+use super::error::{Place, Problems};
+use super::model::{HairClass, Species};
+
+/// Builds the species of a checked root table.
+///
+/// `None` only if a problem was reported, here or by the check.
+pub(crate) fn build(
+    root: &Checked,
+    id: &str,
+    text: String,
+    problems: &mut Problems,
+) -> Option<Species> {
+    let mut reader = Reader { problems };
+    let shared = table(root, "structure");
+    let skin = table(root, "skin").and_then(|t| numbers(t, "color"));
+    let mut classes = Vec::new();
+    let mut complete = true;
+    for name in names(root) {
+        match root.get(name).map(|i| &i.value) {
+            Some(Value::Table(class)) => match reader.class(name, class, shared) {
+                Some(class) => classes.push(class),
+                None => complete = false,
+            },
+            Some(_) => complete = false,
+            None => {
+                complete = false;
+                if !root.is_misspelt(name) {
+                    reader.problems.push(
+                        &root.place,
+                        format!("`{name}` is missing: `classes` names it"),
+                        Some(format!("add a table [{name}] or take it out of `classes`")),
+                    );
+                }
+            }
+        }
+    }
+    let latin = text_of(root, "latin").unwrap_or_default();
+    if !complete || classes.is_empty() {
+        return None;
+    }
+    Some(Species {
+        id: id.to_owned(),
+        name: text_of(root, "name")?,
+        latin,
+        summary: text_of(root, "summary")?,
+        classes,
+        skin_color: skin?.try_into().ok()?,
+        text,
+    })
+}
+
+/// Reads checked tables and reports what does not fit together.
+pub(super) struct Reader<'a> {
+    pub(super) problems: &'a mut Problems,
+}
+
+impl Reader<'_> {
+    fn class(
+        &mut self,
+        name: &str,
+        class: &Checked,
+        shared: Option<&Checked>,
+    ) -> Option<HairClass> {
+        let stations = self.stations(class, shared);
+        let pigment = self.pigment(class);
+        let groom = table(class, "groom").and_then(|t| self.groom(t));
+        Some(HairClass {
+            name: name.to_owned(),
+            stations: stations?,
+            pigment: pigment?,
+            groom: groom?,
+        })
+    }
+
+    /// Reports that two values do not fit together.
+    pub(super) fn conflict(&mut self, place: &Place, message: String, hint: &str) {
+        self.problems.push(place, message, Some(hint.to_owned()));
+    }
+}
+
+/// Names of the hair classes, in order.
+fn names(root: &Checked) -> &[String] {
+    match root.get("classes").map(|i| &i.value) {
+        Some(Value::Names(names)) => names,
+        _ => &[],
+    }
+}
+
+pub(super) fn table<'a>(parent: &'a Checked, key: &str) -> Option<&'a Checked> {
+    match &parent.get(key)?.value {
+        Value::Table(table) => Some(table),
+        _ => None,
+    }
+}
+
+pub(super) fn tables<'a>(parent: &'a Checked, key: &str) -> Option<&'a [Checked]> {
+    match &parent.get(key)?.value {
+        Value::Tables(tables) => Some(tables),
+        _ => None,
+    }
+}
+
+pub(super) fn number(parent: &Checked, key: &str) -> Option<f64> {
+    parent.get(key).and_then(number_of)
+}
+
+pub(super) fn number_of(item: &Item) -> Option<f64> {
+    match item.value {
+        Value::Number(number) => Some(number),
+        _ => None,
+    }
+}
+
+fn numbers(parent: &Checked, key: &str) -> Option<Vec<f64>> {
+    match &parent.get(key)?.value {
+        Value::Numbers(numbers) => Some(numbers.clone()),
+        _ => None,
+    }
+}
+
+fn text_of(parent: &Checked, key: &str) -> Option<String> {
+    match &parent.get(key)?.value {
+        Value::Text(text) => Some(text.clone()),
+        _ => None,
+    }
+}
+
+/// Where a key was written, or its table.
+pub(super) fn place_of<'a>(parent: &'a Checked, key: &str) -> &'a Place {
+    parent.get(key).map_or(&parent.place, |i| &i.place)
+}
