@@ -6,6 +6,8 @@
 
 mod console;
 mod failure;
+mod species;
+mod species_report;
 mod table;
 
 pub use console::Console;
@@ -29,6 +31,8 @@ struct Cli {
 enum Command {
     /// Look into scattering tables, dye them, draw them.
     Table(table::Args),
+    /// Shows the built-in animals and checks species files.
+    Species(species::Args),
 }
 
 /// Parses the command line, runs the command and returns the exit code.
@@ -55,5 +59,6 @@ pub fn run() -> ExitCode {
 fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
     match command {
         Command::Table(args) => table::run(&args, console),
+        Command::Species(args) => species::run(&args, console),
     }
 }

@@ -24,7 +24,7 @@ pub fn ids() -> impl Iterator<Item = &'static str> {
 }
 
 /// The file text of a built-in species.
-pub fn text_of(id: &str) -> Option<&'static str> {
+pub(super) fn text_of(id: &str) -> Option<&'static str> {
     LIBRARY
         .iter()
         .find(|(known, _)| *known == id)

@@ -116,3 +116,17 @@ fn unknown_name(name: &str) -> SpeciesError {
         hint,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_built_in_species_loads() {
+        for id in ids() {
+            if let Err(error) = load(id, &[]) {
+                panic!("{id}:\n{error}");
+            }
+        }
+    }
+}

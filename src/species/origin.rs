@@ -55,6 +55,27 @@ impl Origins {
         self.numbers.iter().find(|n| n.path == path)
     }
 
+    /// The numbers that stand in a table, not in its inner tables.
+    pub fn of_table(&self, table: &str) -> Vec<&Cited> {
+        let inside = |n: &&Cited| n.path.rsplit_once('.').is_some_and(|(t, _)| t == table);
+        self.numbers.iter().filter(inside).collect()
+    }
+
+    /// The numbers of the tables `layer + inner`, innermost layer first; a key that stands in
+    /// several layers counts in the first.
+    pub fn of_layers(&self, layers: &[String], inner: &str) -> Vec<&Cited> {
+        let key = |n: &Cited| n.path.rsplit('.').next().map(str::to_owned);
+        let mut found: Vec<&Cited> = Vec::new();
+        for layer in layers {
+            for number in self.of_table(&format!("{layer}{inner}")) {
+                if found.iter().all(|f| key(f) != key(number)) {
+                    found.push(number);
+                }
+            }
+        }
+        found
+    }
+
     /// How many numbers have a source in the literature.
     pub fn sourced(&self) -> usize {
         self.count(|o| matches!(o, Origin::Source(_)))
