@@ -1,1 +1,299 @@
-//! (being built)
+//! Everything that a renderer needs, resolved and immutable. Scene units are millimeters.
+
+mod accel;
+mod camera;
+mod environment;
+mod flatten;
+mod ribbon;
+mod strands;
+mod surface;
+
+pub use accel::Ray;
+pub use camera::{Camera, View};
+pub use environment::{
+    Environment, EnvironmentError, EnvironmentSample, Sun, load as load_environment,
+};
+pub use ribbon::Segment;
+pub use strands::{Leaving, StrandHit, Strands};
+pub use surface::{Surface, SurfaceHit};
+
+use crate::blame::Blame;
+use crate::bsdf::HairMaterial;
+use crate::color::Rgb;
+use crate::groom::Groom;
+use crate::sampling::hash64;
+use crate::skin::Skin;
+use glam::{Vec3, Vec4Swizzles};
+
+/// What the camera sees where there is no subject. It gives no light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Backdrop {
+    /// The environment itself.
+    Environment,
+    /// One color.
+    Plain(Rgb),
+    /// Studio paper with a pool of light behind the subject: from one color in the middle of the
+    /// picture to another at its corners.
+    Glow {
+        /// Radiance in the middle.
+        center: Rgb,
+        /// Radiance at the corners.
+        edge: Rgb,
+    },
+}
+
+impl Default for Backdrop {
+    fn default() -> Self {
+        Self::Glow {
+            center: Rgb::new(0.42, 0.43, 0.45),
+            edge: Rgb::new(0.10, 0.105, 0.115),
+        }
+    }
+}
+
+impl Backdrop {
+    /// Radiance seen through a point of the picture.
+    ///
+    /// * `at`: 0..1 from the left and from the top.
+    pub fn radiance(&self, environment: &Environment, dir: Vec3, at: [f32; 2]) -> Rgb {
+        match self {
+            Self::Environment => environment.smooth(dir),
+            Self::Plain(color) => *color,
+            Self::Glow { center, edge } => {
+                let (x, y) = (2.0 * at[0] - 1.0, 2.0 * at[1] - 0.9);
+                let far = (0.5 * (x * x + y * y)).clamp(0.0, 1.0);
+                center.lerp(*edge, far * (2.0 - far))
+            }
+        }
+    }
+}
+
+/// A level floor under the subject. The camera sees the backdrop on it, darkened where the subject
+/// takes light away, so that floor and backdrop join without a seam; other rays see matte paint.
+#[derive(Clone, Copy, Debug)]
+pub struct Ground {
+    /// Reflectance toward the subject, 0..1.
+    pub reflectance: f32,
+    height: f32,
+    /// Radiance of white paint on the floor if there were no subject.
+    open: Rgb,
+}
+
+impl Ground {
+    /// Radiance of white paint that sees the whole upper half of the environment.
+    pub fn open(&self) -> Rgb {
+        self.open
+    }
+
+    fn hit(&self, ray: &Ray, limit: f32) -> Option<f32> {
+        let t = (self.height - ray.origin.y) / ray.dir.y;
+        (ray.dir.y < 0.0 && ray.origin.y > self.height && t < limit).then_some(t)
+    }
+}
+
+/// What a scene is made of.
+pub struct SceneParts<'a> {
+    /// The fur.
+    pub groom: &'a Groom,
+    /// Scattering of each hair class of the groom, in its order.
+    pub materials: Vec<HairMaterial>,
+    /// The skin and its linear diffuse reflectance.
+    pub skin: Option<(&'a Skin, Rgb)>,
+    /// The light.
+    pub environment: Environment,
+    /// What is behind the subject.
+    pub backdrop: Backdrop,
+    /// Reflectance of a floor under the subject, 0..1; `None` for no floor.
+    pub ground: Option<f32>,
+    /// Where to look from.
+    pub view: View,
+}
+
+/// A scene ready for rendering.
+pub struct Scene {
+    /// The fur.
+    pub strands: Strands,
+    /// Scattering of each hair class.
+    pub materials: Vec<HairMaterial>,
+    /// The skin under it.
+    pub surface: Option<Surface>,
+    /// The floor under it.
+    pub ground: Option<Ground>,
+    /// The light.
+    pub environment: Environment,
+    /// What is behind the subject.
+    pub backdrop: Backdrop,
+    /// Where to look from.
+    pub view: View,
+}
+
+/// Something in front of a ray.
+#[derive(Clone, Copy, Debug)]
+pub enum Hit {
+    /// A hair.
+    Strand(StrandHit),
+    /// The skin.
+    Surface(SurfaceHit),
+    /// The floor, at this distance.
+    Ground(f32),
+}
+
+impl Scene {
+    /// Sorts everything for tracing.
+    pub fn build(parts: SceneParts<'_>) -> Result<Self, SceneError> {
+        let needed = parts
+            .groom
+            .class
+            .iter()
+            .max()
+            .map_or(0, |&c| c as usize + 1);
+        if needed > parts.materials.len() {
+            return Err(SceneError::Materials {
+                needed,
+                given: parts.materials.len(),
+            });
+        }
+        let strands = Strands::build(parts.groom)?;
+        let surface = match parts.skin {
+            Some((skin, color)) => Some(Surface::build(skin, color)?),
+            None => None,
+        };
+        let mut scene = Self {
+            strands,
+            materials: parts.materials,
+            surface,
+            ground: None,
+            environment: parts.environment,
+            backdrop: parts.backdrop,
+            view: parts.view,
+        };
+        let points = scene.subject();
+        let Some(height) = points.iter().map(|p| p.y).reduce(f32::min) else {
+            return Err(SceneError::Empty);
+        };
+        scene.ground = parts.ground.map(|reflectance| Ground {
+            reflectance,
+            height,
+            open: scene.environment.irradiance_up() / std::f32::consts::PI,
+        });
+        Ok(scene)
+    }
+
+    /// The camera for a picture of a given width over height.
+    pub fn camera(&self, aspect: f32) -> Camera {
+        Camera::framing(&self.subject(), &self.view, aspect)
+    }
+
+    /// The nearest thing in front of a ray.
+    pub fn closest(&self, ray: &Ray, leaving: Option<Leaving>) -> Option<Hit> {
+        let mut limit = f32::INFINITY;
+        let mut found = None;
+        if let Some(hit) = self.surface.as_ref().and_then(|s| s.closest(ray, limit)) {
+            limit = hit.t;
+            found = Some(Hit::Surface(hit));
+        }
+        if let Some(hit) = self.strands.closest(ray, limit, leaving) {
+            limit = hit.t;
+            found = Some(Hit::Strand(hit));
+        }
+        if let Some(t) = self.ground.as_ref().and_then(|g| g.hit(ray, limit)) {
+            found = Some(Hit::Ground(t));
+        }
+        found
+    }
+
+    /// Whether anything hides the environment from the start of a ray.
+    pub fn occluded(&self, ray: &Ray, leaving: Option<Leaving>) -> bool {
+        let far = f32::INFINITY;
+        self.ground
+            .as_ref()
+            .is_some_and(|g| g.hit(ray, far).is_some())
+            || self.surface.as_ref().is_some_and(|s| s.occluded(ray, far))
+            || self.strands.occluded(ray, far, leaving)
+    }
+
+    /// Points that have to be in the picture.
+    fn subject(&self) -> Vec<Vec3> {
+        let strands = self.strands.joints().iter().map(|j| j.xyz());
+        let skin = self
+            .surface
+            .iter()
+            .flat_map(|s| s.corners().iter().flatten().copied());
+        strands.chain(skin).collect()
+    }
+}
+
+/// A scene that cannot be traced.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// Neither strands nor skin.
+    #[error("the scene is empty: no strand has a length and there is no skin")]
+    Empty,
+    /// The arrays of a groom do not fit together.
+    #[error("the groom's arrays do not fit together: {strands} strands, {points} points")]
+    Groom {
+        /// Strands by their classes.
+        strands: usize,
+        /// Control points.
+        points: usize,
+    },
+    /// A control point that cannot be traced.
+    #[error(
+        "control point {index} of the groom is at {at} m and {width} m wide: not finite or too large"
+    )]
+    Point {
+        /// Index of the point.
+        index: usize,
+        /// Its position, meters.
+        at: Vec3,
+        /// Its full width, meters.
+        width: f32,
+    },
+    /// The arrays of a skin do not fit together.
+    #[error(
+        "the skin's arrays do not fit together: {vertices} vertices, a triangle or normal is off"
+    )]
+    Skin {
+        /// Vertices of the mesh.
+        vertices: usize,
+    },
+    /// Something not finite or more than a kilometer away.
+    #[error("geometry at {at} mm is not finite or more than a kilometer away")]
+    Coordinates {
+        /// Where, millimeters.
+        at: Vec3,
+    },
+    /// Too many things in exactly the same place.
+    #[error("{count} strand segments or triangles fill exactly the same box at {at} mm")]
+    Coincident {
+        /// How many.
+        count: usize,
+        /// Where, millimeters.
+        at: Vec3,
+    },
+    /// Hair classes without a material.
+    #[error("the groom has {needed} hair classes but only {given} materials are given")]
+    Materials {
+        /// Classes used.
+        needed: usize,
+        /// Materials there are.
+        given: usize,
+    },
+}
+
+impl SceneError {
+    /// Geometry comes from the user, materials from this program.
+    pub fn blame(&self) -> Blame {
+        match self {
+            Self::Materials { .. } => Blame::Internal,
+            _ => Blame::Input,
+        }
+    }
+}
+
+/// A hash of some words.
+fn hash_bits(words: &[u32]) -> u64 {
+    words.iter().fold(0x5851_f42d_4c95_7f2d, |h, &w| {
+        hash64(h ^ u64::from(w).wrapping_mul(0x9e37_79b9_7f4a_7c15)).wrapping_add(u64::from(w))
+    })
+}

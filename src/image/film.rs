@@ -1,0 +1,125 @@
+//! Rendered pictures as files.
+
+use super::view::ViewTransform;
+use super::write_png;
+use crate::io::{AtomicFile, FileError};
+use crate::render::{Film, Pixel};
+use exr::prelude::{
+    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image,
+    ImageAttributes, IntegerBounds, Layer, LayerAttributes, LineOrder, Text, Vec2, WritableImage,
+    f16,
+};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Where a picture comes from: pairs of names and texts.
+pub type Provenance<'a> = [(&'a str, &'a str)];
+
+/// Name of the EXR attribute that holds the provenance as a JSON object. One attribute, because the
+/// order of several would change from run to run.
+pub const PROVENANCE_ATTRIBUTE: &str = "vair:provenance";
+
+/// Writes an 8-bit sRGB PNG of the beauty pass, provenance in text chunks.
+pub fn write_film_png(
+    path: &Path,
+    film: &Film,
+    view: &ViewTransform,
+    provenance: &Provenance<'_>,
+) -> Result<(), FileError> {
+    let bytes: Vec<u8> = film
+        .pixels
+        .iter()
+        .flat_map(|p| view.bytes(p.radiance))
+        .collect();
+    write_png(path, film.crop.width, film.crop.height, &bytes, provenance)
+}
+
+/// Writes an EXR with all passes: `R G B A`, `Z` (millimeters from the camera), `albedo.RGB`,
+/// `normal.XYZ`, `tangent.XYZ` (world, the mean over the hits of a pixel), `strand.id` (the stable id,
+/// 4294967295 for none), `root.UV`, `samples` and `variance.Y` (of the mean luminance).
+///
+/// The data window is the crop, the display window the full frame. Same film, same bytes.
+pub fn write_film_exr(
+    path: &Path,
+    film: &Film,
+    provenance: &Provenance<'_>,
+) -> Result<(), FileError> {
+    let mut bytes = io::Cursor::new(Vec::new());
+    encode(film, provenance)
+        .write()
+        .to_buffered(&mut bytes)
+        .map_err(|e| {
+            let reason = io::Error::new(io::ErrorKind::InvalidInput, e.to_string());
+            FileError::new("write", path, reason)
+        })?;
+    let mut file = AtomicFile::create(path)?;
+    file.write_all(bytes.get_ref())
+        .map_err(|e| FileError::new("write", path, e))?;
+    file.commit()
+}
+
+fn encode(film: &Film, provenance: &Provenance<'_>) -> Image<Layer<AnyChannels<FlatSamples>>> {
+    let (crop, [width, height]) = (film.crop, film.resolution);
+    let text: serde_json::Map<String, serde_json::Value> = provenance
+        .iter()
+        .map(|(k, v)| ((*k).to_owned(), (*v).into()))
+        .collect();
+    let mut layer = LayerAttributes {
+        layer_position: Vec2(crop.x as i32, crop.y as i32),
+        software_name: Some(Text::from(concat!("vair ", env!("CARGO_PKG_VERSION")))),
+        ..LayerAttributes::named("film")
+    };
+    let json = serde_json::Value::Object(text).to_string();
+    layer.other.insert(
+        Text::new_or_panic(PROVENANCE_ATTRIBUTE),
+        AttributeValue::Text(Text::from(json.as_str())),
+    );
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        line_order: LineOrder::Increasing,
+        ..Encoding::SMALL_LOSSLESS
+    };
+    let size = Vec2(crop.width as usize, crop.height as usize);
+    let image = ImageAttributes::new(IntegerBounds::new(
+        Vec2(0, 0),
+        Vec2(width as usize, height as usize),
+    ));
+    Image {
+        attributes: image,
+        layer_data: Layer::new(size, layer, encoding, channels(film)),
+    }
+}
+
+fn channels(film: &Film) -> AnyChannels<FlatSamples> {
+    let each = |name: &str, samples| AnyChannel::new(name, samples);
+    let float = |get: fn(&Pixel) -> f32| FlatSamples::F32(film.pixels.iter().map(get).collect());
+    let half = |get: fn(&Pixel) -> f32| {
+        FlatSamples::F16(film.pixels.iter().map(|p| f16::from_f32(get(p))).collect())
+    };
+    let whole = |get: fn(&Pixel) -> u32| FlatSamples::U32(film.pixels.iter().map(get).collect());
+    AnyChannels::sort(
+        [
+            each("R", float(|p| p.radiance.x)),
+            each("G", float(|p| p.radiance.y)),
+            each("B", float(|p| p.radiance.z)),
+            each("A", float(|p| p.alpha)),
+            each("Z", float(|p| p.depth)),
+            each("albedo.R", half(|p| p.albedo.x)),
+            each("albedo.G", half(|p| p.albedo.y)),
+            each("albedo.B", half(|p| p.albedo.z)),
+            each("normal.X", half(|p| p.normal.x)),
+            each("normal.Y", half(|p| p.normal.y)),
+            each("normal.Z", half(|p| p.normal.z)),
+            each("tangent.X", half(|p| p.tangent.x)),
+            each("tangent.Y", half(|p| p.tangent.y)),
+            each("tangent.Z", half(|p| p.tangent.z)),
+            each("strand.id", whole(|p| p.strand)),
+            each("root.U", float(|p| p.root_uv.x)),
+            each("root.V", float(|p| p.root_uv.y)),
+            each("samples", whole(|p| p.samples)),
+            each("variance.Y", float(|p| p.variance)),
+        ]
+        .into_iter()
+        .collect(),
+    )
+}

@@ -1,0 +1,212 @@
+//! The path integrator: one sample of one pixel, a pure function of (scene, seed, pixel, index).
+
+use super::Sampler;
+use super::draws::{Draws, Purpose};
+use super::resample::{Target, candidates, resample};
+use super::scatter::{Direction, Scatter};
+use crate::color::Rgb;
+use crate::scene::{Camera, Hit, Scene};
+use glam::{Vec2, Vec3};
+
+/// Scattering events before roulette may end a path.
+const ROULETTE_FROM: u32 = 8;
+
+/// Scattering events after which a path is cut whatever it carries. Lossless fur escapes long
+/// before: cut paths are counted and reported.
+const FAR_CAP: u32 = 1000;
+
+/// Standard deviation of the Gaussian pixel filter, pixels. 0.3 shows stairs on single hairs, 0.6
+/// blurs them.
+const FILTER_SIGMA: f32 = 0.42;
+
+/// What the camera saw first.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct FirstHit {
+    /// Distance from the camera, millimeters.
+    pub(super) depth: f32,
+    pub(super) albedo: Rgb,
+    pub(super) normal: Vec3,
+    /// Root to tip; zero on surfaces.
+    pub(super) tangent: Vec3,
+    /// Stable id of the strand; `None` on surfaces.
+    pub(super) strand: Option<u32>,
+    pub(super) root_uv: Vec2,
+}
+
+/// One sample of a pixel.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Sample {
+    /// Radiance, backdrop included.
+    pub(super) radiance: Rgb,
+    /// 1 where the subject was met, else 0.
+    pub(super) alpha: f32,
+    pub(super) first: Option<FirstHit>,
+    /// Closest-hit and occlusion queries made.
+    pub(super) rays: u32,
+    /// Whether the far cap cut the path.
+    pub(super) capped: bool,
+}
+
+/// Traces paths of one picture.
+pub(super) struct Integrator<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) camera: Camera,
+    pub(super) resolution: [u32; 2],
+    pub(super) seed: u64,
+    pub(super) sampler: Sampler,
+    /// Replaces the target of resampling, for the test of its bias.
+    #[cfg(test)]
+    pub(super) bare_target: bool,
+}
+
+impl Integrator<'_> {
+    /// Sample `index` of the pixel at `(x, y)` of the full frame.
+    pub(super) fn sample(&self, x: u32, y: u32, index: u32) -> Sample {
+        let [width, height] = self.resolution;
+        let draws = Draws::new(
+            self.seed,
+            u64::from(y) * u64::from(width) + u64::from(x),
+            index,
+        );
+        let u = draws.point(0, Purpose::Filter);
+        let radius = FILTER_SIGMA * (-2.0 * (1.0 - u[0]).ln()).sqrt();
+        let (sin, cos) = (std::f32::consts::TAU * u[1]).sin_cos();
+        let at = [
+            (x as f32 + 0.5 + radius * cos) / width as f32,
+            (y as f32 + 0.5 + radius * sin) / height as f32,
+        ];
+        let ray = self.camera.ray(at[0], at[1]);
+        let mut out = Sample {
+            rays: 1,
+            ..Sample::default()
+        };
+        let backdrop = || {
+            self.scene
+                .backdrop
+                .radiance(&self.scene.environment, ray.dir, at)
+        };
+        let Some(hit) = self.scene.closest(&ray, None) else {
+            out.radiance = backdrop();
+            return out;
+        };
+        let scatter = Scatter::new(self.scene, &ray, &hit, true);
+        let light = self.trace(&scatter, &draws, &mut out);
+        if let (Hit::Ground(_), Some(ground)) = (&hit, &self.scene.ground) {
+            // The backdrop, times the share of its light that the subject leaves to the floor.
+            out.radiance = backdrop() * light / ground.open().max(Rgb::splat(f32::MIN_POSITIVE));
+            return out;
+        }
+        out.radiance = light;
+        out.alpha = 1.0;
+        out.first = Some(self.describe(&hit, &scatter));
+        out
+    }
+
+    /// Radiance that leaves a scattering point toward the viewer.
+    fn trace(&self, first: &Scatter<'_>, draws: &Draws, out: &mut Sample) -> Rgb {
+        let environment = &self.scene.environment;
+        let mut sum = Rgb::ZERO;
+        let mut throughput = Rgb::ONE;
+        let mut next;
+        let mut scatter = first;
+        for depth in 0..FAR_CAP {
+            if matches!(self.sampler, Sampler::Env | Sampler::Mis) {
+                sum += throughput * self.direct(scatter, draws, depth, out);
+            }
+            let Some(direction) = self.continue_from(scatter, draws, depth) else {
+                return sum;
+            };
+            throughput *= direction.weight;
+            if depth >= ROULETTE_FROM {
+                let survival = throughput.max_element().min(1.0);
+                if draws.point(depth, Purpose::Choice)[1] >= survival {
+                    return sum;
+                }
+                throughput /= survival;
+            }
+            let (ray, leaving) = scatter.leave(direction.dir);
+            out.rays += 1;
+            let Some(hit) = self.scene.closest(&ray, leaving) else {
+                let (light, light_pdf) = environment.eval(ray.dir);
+                return sum + throughput * light * self.escape_weight(direction.pdf, light_pdf);
+            };
+            next = Scatter::new(self.scene, &ray, &hit, false);
+            scatter = &next;
+        }
+        out.capped = true;
+        sum
+    }
+
+    /// The direction in which the path goes on.
+    fn continue_from(&self, scatter: &Scatter<'_>, draws: &Draws, depth: u32) -> Option<Direction> {
+        let count = match self.sampler {
+            Sampler::Qsir => candidates(depth),
+            Sampler::Bsdf | Sampler::Env | Sampler::Mis => 1,
+        };
+        if count == 1 {
+            let u = draws.point(depth, Purpose::Scatter);
+            return scatter.sample([u[0], u[1], u[2]]);
+        }
+        let environment = &self.scene.environment;
+        #[cfg(test)]
+        if self.bare_target {
+            return resample(scatter, environment, &Target::bare(), draws, depth, count);
+        }
+        let target = Target::new(environment, depth);
+        resample(scatter, environment, &target, draws, depth, count)
+    }
+
+    /// Light straight from the environment, by a sample of the environment.
+    fn direct(&self, scatter: &Scatter<'_>, draws: &Draws, depth: u32, out: &mut Sample) -> Rgb {
+        let u = draws.point(depth, Purpose::Light);
+        let Some(light) = self.scene.environment.sample([u[0], u[1]]) else {
+            return Rgb::ZERO;
+        };
+        let (density, scatter_pdf) = scatter.eval(light.dir);
+        if density.max_element() <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let (ray, leaving) = scatter.leave(light.dir);
+        out.rays += 1;
+        if self.scene.occluded(&ray, leaving) {
+            return Rgb::ZERO;
+        }
+        let share = match self.sampler {
+            Sampler::Mis => power(light.pdf, scatter_pdf),
+            Sampler::Qsir | Sampler::Bsdf | Sampler::Env => 1.0,
+        };
+        density * light.radiance * (share / light.pdf)
+    }
+
+    /// How much of the environment's light an escaping path may bring that was not gathered before.
+    fn escape_weight(&self, scatter_pdf: f32, light_pdf: f32) -> f32 {
+        match self.sampler {
+            Sampler::Qsir | Sampler::Bsdf => 1.0,
+            Sampler::Env => 0.0,
+            Sampler::Mis => power(scatter_pdf, light_pdf),
+        }
+    }
+
+    fn describe(&self, hit: &Hit, scatter: &Scatter<'_>) -> FirstHit {
+        let strands = &self.scene.strands;
+        let (depth, strand) = match hit {
+            Hit::Strand(hit) => (hit.t, Some(hit)),
+            Hit::Surface(hit) => (hit.t, None),
+            Hit::Ground(t) => (*t, None),
+        };
+        FirstHit {
+            depth,
+            albedo: scatter.albedo(),
+            normal: scatter.normal(),
+            tangent: strand.map_or(Vec3::ZERO, |s| s.tangent),
+            strand: strand.map(|s| strands.id(s.strand)),
+            root_uv: strand.map_or(Vec2::ZERO, |s| strands.root_uv(s.strand)),
+        }
+    }
+}
+
+/// The power heuristic with exponent 2 (Veach 1997).
+fn power(own: f32, other: f32) -> f32 {
+    let (a, b) = (own * own, other * other);
+    if a > 0.0 { a / (a + b) } else { 0.0 }
+}

@@ -1,0 +1,177 @@
+//! The only file that names the acceleration structure's crate: what it cannot take is refused
+//! here, and its order of traversal is hidden from results.
+//!
+//! Scenes are in millimeters because the crate's nodes ignore everything nearer than a fixed
+//! 1e-4 units: a tenth of a micrometer then, well below the width of a hair. In meters it would be
+//! a tenth of a millimeter, and scattered rays would pass through the strands around them.
+
+use super::SceneError;
+use glam::{UVec2, Vec3, Vec3A};
+use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
+use obvhs::ray::Ray as BoxRay;
+use obvhs::{Boundable, BvhBuildParams, aabb::Aabb};
+use std::time::Duration;
+
+/// Largest coordinate taken, scene units. Box areas of larger ones overflow single precision.
+pub(super) const LIMIT: f32 = 1e6;
+
+/// Most distinct primitives allowed in exactly the same box. Building is quadratic in this number,
+/// and every ray through the box tests all of them.
+const COINCIDENT_LIMIT: usize = 64;
+
+/// A straight path: unit direction, scene units.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    /// Where it starts.
+    pub origin: Vec3,
+    /// Unit direction.
+    pub dir: Vec3,
+}
+
+struct Bounds(Aabb);
+
+impl Boundable for Bounds {
+    fn aabb(&self) -> Aabb {
+        self.0
+    }
+}
+
+/// A bounding volume hierarchy over primitives that the caller keeps, in the order of
+/// [`Accel::order`].
+pub(super) struct Accel {
+    bvh: CwBvh,
+}
+
+impl Accel {
+    /// * `boxes`: corners of each primitive's box.
+    /// * Fails on non-finite or huge coordinates and on too many primitives in one place.
+    pub(super) fn build(boxes: &[(Vec3, Vec3)]) -> Result<Self, SceneError> {
+        for (lo, hi) in boxes {
+            let reach = lo.abs().max(hi.abs()).max_element();
+            if !(lo.is_finite() && hi.is_finite()) || reach > LIMIT {
+                return Err(SceneError::Coordinates { at: *lo });
+            }
+        }
+        refuse_crowds(boxes)?;
+        if boxes.is_empty() {
+            return Ok(Self {
+                bvh: CwBvh::default(),
+            });
+        }
+        // Rays are tested against boxes in rounded arithmetic: a little room keeps edges closed.
+        let prims: Vec<Bounds> = boxes
+            .iter()
+            .map(|(lo, hi)| {
+                let room = 4.0 * f32::EPSILON * lo.abs().max(hi.abs()).max_element();
+                Bounds(Aabb::new(Vec3A::from(*lo - room), Vec3A::from(*hi + room)))
+            })
+            .collect();
+        let params = BvhBuildParams::medium_build();
+        let bvh = build_cwbvh(&prims, params, &mut Duration::default());
+        Ok(Self { bvh })
+    }
+
+    /// Index in the caller's original order of each primitive in traversal order.
+    pub(super) fn order(&self) -> &[u32] {
+        &self.bvh.primitive_indices
+    }
+
+    /// The nearest hit in front of `limit`.
+    ///
+    /// * `test(primitive, best)`: distance to a primitive (in traversal order), or `None` if there
+    ///   is no hit at or before `best`.
+    /// * Of equal distances the lowest original index wins, whatever the shape of the tree.
+    #[inline(always)]
+    pub(super) fn closest(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        mut test: impl FnMut(usize, f32) -> Option<f32>,
+    ) -> Option<(usize, f32)> {
+        if self.bvh.nodes.is_empty() {
+            return None;
+        }
+        let mut walk = box_ray(ray, limit);
+        let mut found = None;
+        let mut state = self.bvh.new_traversal(walk.direction);
+        let mut node;
+        obvhs::traverse!(
+            self.bvh,
+            node,
+            state,
+            node.intersect_ray(&walk, state.oct_inv4),
+            {
+                let prim = state.primitive_id as usize;
+                if let Some(t) = test(prim, walk.tmax) {
+                    let order = self.order();
+                    let first = match found {
+                        Some(old) if t == walk.tmax => order[prim] < order[old],
+                        _ => t <= walk.tmax,
+                    };
+                    if first {
+                        walk.tmax = t;
+                        found = Some(prim);
+                    }
+                }
+            }
+        );
+        found.map(|prim| (prim, walk.tmax))
+    }
+
+    /// Whether anything is hit in front of `limit`; stops at the first hit found.
+    #[inline(always)]
+    pub(super) fn any(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        mut test: impl FnMut(usize, f32) -> bool,
+    ) -> bool {
+        if self.bvh.nodes.is_empty() {
+            return false;
+        }
+        let walk = box_ray(ray, limit);
+        let mut state = self.bvh.new_traversal(walk.direction);
+        let mut node;
+        'walk: {
+            obvhs::traverse!(
+                self.bvh,
+                node,
+                state,
+                node.intersect_ray(&walk, state.oct_inv4),
+                {
+                    if test(state.primitive_id as usize, limit) {
+                        break 'walk true;
+                    }
+                }
+            );
+            false
+        }
+    }
+}
+
+fn box_ray(ray: &Ray, limit: f32) -> BoxRay {
+    // Adding zero turns -0 into 0: the node test takes the sign of the reciprocal from one and the
+    // near side of the box from the other.
+    let dir = Vec3A::from(ray.dir) + Vec3A::ZERO;
+    BoxRay::new(Vec3A::from(ray.origin), dir, 0.0, limit)
+}
+
+fn refuse_crowds(boxes: &[(Vec3, Vec3)]) -> Result<(), SceneError> {
+    let key = |i: u32| {
+        let (lo, hi) = boxes[i as usize];
+        [lo.x, lo.y, lo.z, hi.x, hi.y, hi.z].map(f32::to_bits)
+    };
+    let mut hashed: Vec<(u64, u32)> = (0..boxes.len() as u32)
+        .map(|i| (super::hash_bits(&key(i)), i))
+        .collect();
+    hashed.sort_unstable();
+    for group in hashed.chunk_by(|a, b| a.0 == b.0) {
+        if group.len() > COINCIDENT_LIMIT {
+            return Err(SceneError::Coincident {
+                count: group.len(),
+                at: boxes[group[0].1 as usize].0,
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,190 @@
+//! A pinhole camera that finds its own place in front of the subject.
+
+use super::accel::Ray;
+use glam::{Mat3, Vec3};
+
+/// How to look at the subject. Angles in degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Direction from which the subject is seen, around +Y; 0 is from +Z, 90 from +X.
+    pub yaw_deg: f32,
+    /// Height of the camera above the subject's level, as an angle.
+    pub pitch_deg: f32,
+    /// Field of view along the shorter side of the picture. A long lens flatters animals as it does
+    /// people: below 15 the picture is flat, above 50 noses grow.
+    pub fov_deg: f32,
+    /// 1 frames the subject; 2 shows half of it.
+    pub zoom: f32,
+    /// Free space around the subject, as a share of the shorter side.
+    pub margin: f32,
+    /// Shift of the target across and up the picture, as a share of the subject's radius.
+    pub shift: [f32; 2],
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            yaw_deg: 35.0,
+            pitch_deg: 12.0,
+            fov_deg: 28.0,
+            zoom: 1.0,
+            margin: 0.07,
+            shift: [0.0, 0.0],
+        }
+    }
+}
+
+/// A camera at its place. Scene units.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    position: Vec3,
+    /// Columns: right, up, backward.
+    axes: Mat3,
+    /// Half the picture at unit distance.
+    half: [f32; 2],
+}
+
+impl Camera {
+    /// Frames a cloud of points.
+    ///
+    /// * `points`: what has to be inside the picture, scene units; finite.
+    /// * `aspect`: width over height of the picture.
+    pub fn framing(points: &[Vec3], view: &View, aspect: f32) -> Self {
+        let (yaw, pitch) = (view.yaw_deg.to_radians(), view.pitch_deg.to_radians());
+        let backward = Vec3::new(
+            yaw.sin() * pitch.cos(),
+            pitch.sin(),
+            yaw.cos() * pitch.cos(),
+        );
+        let right = Vec3::new(yaw.cos(), 0.0, -yaw.sin());
+        let axes = Mat3::from_cols(right, backward.cross(right), backward);
+        let short = (0.5 * view.fov_deg.to_radians()).tan();
+        let half = [short * aspect.max(1.0), short / aspect.min(1.0)];
+        let (position, radius) = place(points, axes, half.map(|h| h * (1.0 - 2.0 * view.margin)));
+        // Zooming narrows the view rather than walking up to the fur: the perspective stays.
+        let half = half.map(|h| h / view.zoom);
+        let shift = axes * Vec3::new(view.shift[0], view.shift[1], 0.0) * radius;
+        Self {
+            position: position + shift,
+            axes,
+            half,
+        }
+    }
+
+    /// The ray through a point of the picture.
+    ///
+    /// * `x`, `y`: 0..1 from the left and from the top.
+    pub fn ray(&self, x: f32, y: f32) -> Ray {
+        let film = Vec3::new(
+            (2.0 * x - 1.0) * self.half[0],
+            (1.0 - 2.0 * y) * self.half[1],
+            -1.0,
+        );
+        Ray {
+            origin: self.position,
+            dir: (self.axes * film).normalize(),
+        }
+    }
+
+    /// Picture coordinates of a point, 0..1 from the left and from the top, if it is in front.
+    pub fn project(&self, point: Vec3) -> Option<[f32; 2]> {
+        let p = self.axes.transpose() * (point - self.position);
+        (p.z < 0.0).then(|| {
+            [
+                0.5 + 0.5 * p.x / (-p.z * self.half[0]),
+                0.5 - 0.5 * p.y / (-p.z * self.half[1]),
+            ]
+        })
+    }
+
+    /// Where the camera stands.
+    pub fn position(&self) -> Vec3 {
+        self.position
+    }
+}
+
+/// The nearest position from which all points are inside, and the radius of the subject.
+///
+/// A point at (x, y, z) relative to a target is inside if `|x| <= half (distance - z)`: the bound
+/// of all points is a pair of planes each way, and the camera stands where both pairs cross.
+fn place(points: &[Vec3], axes: Mat3, half: [f32; 2]) -> (Vec3, f32) {
+    if points.is_empty() {
+        return (axes.z_axis, 1.0);
+    }
+    let local = axes.transpose();
+    let n = points.len() as f64;
+    let mean = points.iter().map(|p| p.as_dvec3()).sum::<glam::DVec3>() / n;
+    let center = mean.as_vec3();
+    // Along each film axis: the farthest any point reaches beyond a ray of the frame's edge.
+    let (mut high, mut low) = ([f32::MIN; 2], [f32::MIN; 2]);
+    let (mut radius, mut front) = (0.0f32, f32::MIN);
+    for point in points {
+        let p = local * (*point - center);
+        radius = radius.max(p.length());
+        front = front.max(p.z);
+        for i in 0..2 {
+            high[i] = high[i].max(p[i] + half[i] * p.z);
+            low[i] = low[i].max(-p[i] + half[i] * p.z);
+        }
+    }
+    let offset = [0, 1].map(|i| 0.5 * (high[i] - low[i]));
+    let distance = [0, 1].map(|i| 0.5 * (high[i] + low[i]) / half[i]);
+    let radius = radius.max(1e-3);
+    let distance = distance[0].max(distance[1]).max(front + 0.1 * radius);
+    let local_position = Vec3::new(offset[0], offset[1], distance);
+    (center + axes * local_position, radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::Rng;
+
+    #[test]
+    fn the_subject_fills_the_frame_and_stays_inside() {
+        let mut rng = Rng::new(5, 0);
+        let points: Vec<Vec3> = (0..500)
+            .map(|_| Vec3::from_array(std::array::from_fn(|_| rng.uniform_f32())))
+            .map(|p| p * Vec3::new(300.0, 50.0, 80.0) + 700.0)
+            .collect();
+        for aspect in [0.5, 1.0, 2.5] {
+            for (yaw_deg, pitch_deg) in [(0.0, 0.0), (35.0, 12.0), (-120.0, 80.0), (180.0, -40.0)] {
+                let view = View {
+                    yaw_deg,
+                    pitch_deg,
+                    ..View::default()
+                };
+                let camera = Camera::framing(&points, &view, aspect);
+                let (mut lo, mut hi) = ([1.0f32; 2], [0.0f32; 2]);
+                for p in &points {
+                    let at = camera.project(*p).unwrap();
+                    for i in 0..2 {
+                        lo[i] = lo[i].min(at[i]);
+                        hi[i] = hi[i].max(at[i]);
+                    }
+                }
+                let margin = view.margin - 1e-3;
+                assert!(lo[0] >= margin && lo[1] >= margin);
+                assert!(hi[0] <= 1.0 - margin && hi[1] <= 1.0 - margin);
+                let fill = (hi[0] - lo[0]).max(hi[1] - lo[1]);
+                assert!(fill > 1.0 - 2.0 * view.margin - 1e-3, "{fill}");
+            }
+        }
+    }
+
+    #[test]
+    fn rays_go_where_points_project() {
+        let camera = Camera::framing(&[Vec3::ZERO, Vec3::ONE], &View::default(), 1.5);
+        for (x, y) in [(0.5, 0.5), (0.1, 0.9), (0.99, 0.3)] {
+            let ray = camera.ray(x, y);
+            let at = camera.project(ray.origin + 3.0 * ray.dir).unwrap();
+            assert!((at[0] - x).abs() < 1e-5 && (at[1] - y).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn a_single_point_is_framed() {
+        let camera = Camera::framing(&[Vec3::ONE; 3], &View::default(), 1.0);
+        assert!(camera.project(Vec3::ONE).is_some());
+    }
+}

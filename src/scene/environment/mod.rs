@@ -1,0 +1,320 @@
+//! Light from far away: a latitude-longitude picture of radiance, sampled exactly.
+//!
+//! The middle of the picture is -Z, +X is to the right of it, +Y at the top. To the integrator a
+//! texel is a constant patch of sky: texels are chosen by luminance times exact solid angle and
+//! evenly inside, so the density of a direction is its luminance over the integral of luminance,
+//! and it is zero only where there is no light.
+
+mod builtin;
+mod file;
+mod radiance_hdr;
+mod sky;
+
+pub use file::{EnvironmentError, load};
+pub use sky::Sun;
+
+use crate::color::{Rgb, luminance};
+use glam::Vec3;
+use std::f64::consts::{PI, TAU};
+
+/// Radiance from every direction.
+#[derive(Clone, Debug)]
+pub struct Environment {
+    width: usize,
+    height: usize,
+    /// Rows from the top, linear radiance.
+    texels: Vec<Rgb>,
+    /// Share of luminance in all rows up to and including this one.
+    rows: Vec<f64>,
+    /// The same along each row.
+    columns: Vec<f64>,
+    /// Integral of luminance over the sphere.
+    power: f64,
+    mean: Rgb,
+    /// Cosine and sine of the turn about +Y.
+    turn: [f32; 2],
+}
+
+/// A direction drawn from an [`Environment`].
+#[derive(Clone, Copy, Debug)]
+pub struct EnvironmentSample {
+    /// Unit direction to the light.
+    pub dir: Vec3,
+    /// Radiance from there.
+    pub radiance: Rgb,
+    /// Density per steradian, > 0.
+    pub pdf: f32,
+}
+
+impl Environment {
+    /// * `texels`: `width * height` radiances, finite and not negative, rows from the top; rows are
+    ///   equally high in angle.
+    pub(in crate::scene) fn new(width: usize, height: usize, texels: Vec<Rgb>) -> Self {
+        debug_assert_eq!(texels.len(), width * height);
+        let mut rows = Vec::with_capacity(height);
+        let mut columns = Vec::with_capacity(width * height);
+        let (mut power, mut mean) = (0.0, glam::DVec3::ZERO);
+        for (y, row) in texels.chunks_exact(width).enumerate() {
+            let solid_angle = band(y, height) * TAU / width as f64;
+            let mut sum = 0.0;
+            for texel in row {
+                sum += f64::from(luminance(*texel));
+                columns.push(sum);
+                mean += texel.as_dvec3() * solid_angle;
+            }
+            let from = columns.len() - width;
+            for c in &mut columns[from..] {
+                *c /= sum.max(f64::MIN_POSITIVE);
+            }
+            power += sum * solid_angle;
+            rows.push(power);
+        }
+        for r in &mut rows {
+            *r /= power.max(f64::MIN_POSITIVE);
+        }
+        Self {
+            width,
+            height,
+            texels,
+            rows,
+            columns,
+            power,
+            mean: (mean / (4.0 * PI)).as_vec3(),
+            turn: [1.0, 0.0],
+        }
+    }
+
+    /// The same light turned about +Y, counter-clockwise seen from above.
+    #[must_use]
+    pub fn turned(mut self, degrees: f32) -> Self {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        self.turn = [cos, sin];
+        self
+    }
+
+    /// The same light, brighter by a factor >= 0.
+    #[must_use]
+    pub fn scaled(self, factor: f32) -> Self {
+        let texels = self.texels.iter().map(|t| *t * factor).collect();
+        Self {
+            turn: self.turn,
+            ..Self::new(self.width, self.height, texels)
+        }
+    }
+
+    /// Mean radiance over the sphere.
+    pub fn mean(&self) -> Rgb {
+        self.mean
+    }
+
+    /// Irradiance on a level plane that sees nothing but this environment: the integral of radiance
+    /// times height over the upper half.
+    pub fn irradiance_up(&self) -> Rgb {
+        let mut sum = glam::DVec3::ZERO;
+        for (y, row) in self.texels.chunks_exact(self.width).enumerate() {
+            let (top, bottom) = (edge(y, self.height), edge(y + 1, self.height));
+            let (top, bottom) = (top.max(0.0), bottom.max(0.0));
+            let weight = 0.5 * (top * top - bottom * bottom) * TAU / self.width as f64;
+            sum += weight * row.iter().map(|t| t.as_dvec3()).sum::<glam::DVec3>();
+        }
+        sum.as_vec3()
+    }
+
+    /// Radiance from a unit direction and the density with which [`Environment::sample`] draws it.
+    pub fn eval(&self, dir: Vec3) -> (Rgb, f32) {
+        let (x, y) = self.locate(dir);
+        let column = (x as usize).min(self.width - 1);
+        let row = (y as usize).min(self.height - 1);
+        self.texel(row, column)
+    }
+
+    /// Radiance interpolated between texels, for eyes only: light transport uses [`Self::eval`].
+    pub fn smooth(&self, dir: Vec3) -> Rgb {
+        let (x, y) = self.locate(dir);
+        let (x, y) = (x - 0.5, (y - 0.5).clamp(0.0, (self.height - 1) as f64));
+        let (fx, fy) = ((x - x.floor()) as f32, (y - y.floor()) as f32);
+        let x0 = (x.floor() as i64).rem_euclid(self.width as i64) as usize;
+        let (x1, y0) = ((x0 + 1) % self.width, y as usize);
+        let y1 = (y0 + 1).min(self.height - 1);
+        let at = |row: usize, column: usize| self.texels[row * self.width + column];
+        let upper = at(y0, x0).lerp(at(y0, x1), fx);
+        let lower = at(y1, x0).lerp(at(y1, x1), fx);
+        upper.lerp(lower, fy)
+    }
+
+    /// Draws a direction by luminance from two numbers in `[0, 1)`; `None` if all is black.
+    pub fn sample(&self, u: [f32; 2]) -> Option<EnvironmentSample> {
+        if self.power <= 0.0 {
+            return None;
+        }
+        let (row, v) = choose(&self.rows, f64::from(u[1]));
+        let columns = &self.columns[row * self.width..(row + 1) * self.width];
+        let (column, s) = choose(columns, f64::from(u[0]));
+        let (radiance, pdf) = self.texel(row, column);
+        let up = edge(row, self.height) - v * band(row, self.height);
+        let azimuth = ((column as f64 + s) / self.width as f64 - 0.5) * TAU;
+        let flat = (1.0 - up * up).max(0.0).sqrt();
+        let (sin, cos) = azimuth.sin_cos();
+        let d = Vec3::new((flat * sin) as f32, up as f32, (-flat * cos) as f32);
+        let [c, s] = self.turn;
+        let dir = Vec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
+        (pdf > 0.0).then_some(EnvironmentSample { dir, radiance, pdf })
+    }
+
+    fn texel(&self, row: usize, column: usize) -> (Rgb, f32) {
+        let radiance = self.texels[row * self.width + column];
+        let pdf = f64::from(luminance(radiance)) / self.power.max(f64::MIN_POSITIVE);
+        (radiance, pdf as f32)
+    }
+
+    /// Picture coordinates in texels.
+    fn locate(&self, dir: Vec3) -> (f64, f64) {
+        let [c, s] = self.turn;
+        let (x, z) = (c * dir.x - s * dir.z, c * dir.z + s * dir.x);
+        let azimuth = f64::from(x).atan2(-f64::from(z));
+        let polar = f64::from(x).hypot(f64::from(z)).atan2(f64::from(dir.y));
+        (
+            (0.5 + azimuth / TAU) * self.width as f64,
+            polar / PI * self.height as f64,
+        )
+    }
+}
+
+/// Direction of the middle of a texel, before turning.
+fn texel_direction(x: f64, y: f64) -> Vec3 {
+    let (sin_p, cos_p) = ((x - 0.5) * TAU).sin_cos();
+    let (sin_t, cos_t) = (y * PI).sin_cos();
+    glam::DVec3::new(sin_t * sin_p, cos_t, -sin_t * cos_p).as_vec3()
+}
+
+/// Height (sine of elevation) of the upper edge of a row.
+fn edge(row: usize, height: usize) -> f64 {
+    (PI * row as f64 / height as f64).cos()
+}
+
+/// Height of a row's band: its solid angle over 2 pi.
+fn band(row: usize, height: usize) -> f64 {
+    edge(row, height) - edge(row + 1, height)
+}
+
+/// The interval of a cumulative distribution that holds `u`, and the place of `u` in it.
+fn choose(cumulative: &[f64], u: f64) -> (usize, f64) {
+    let i = cumulative.partition_point(|&c| c <= u);
+    let i = i.min(cumulative.len() - 1);
+    let low = if i == 0 { 0.0 } else { cumulative[i - 1] };
+    let width = cumulative[i] - low;
+    let place = if width > 0.0 { (u - low) / width } else { 0.5 };
+    (i, place.clamp(0.0, 1.0 - 1e-9))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::Sobol;
+
+    fn environments() -> Vec<Environment> {
+        let half = |i: usize| if i % 64 < 32 { Rgb::ONE } else { Rgb::ZERO };
+        vec![
+            Environment::white(),
+            Environment::studio().turned(30.0),
+            Environment::sky(&Sun::default()).turned(-70.0),
+            Environment::new(64, 32, (0..64 * 32).map(half).collect()),
+        ]
+    }
+
+    #[test]
+    fn density_integrates_to_one() {
+        for env in environments() {
+            let (nx, ny) = (2 * env.width, 2 * env.height);
+            let mut sum = 0.0;
+            for y in 0..ny {
+                for x in 0..nx {
+                    let u = (x as f64 + 0.5) / nx as f64;
+                    let d = texel_direction(u, (y as f64 + 0.5) / ny as f64);
+                    sum += f64::from(env.eval(d).1) * band(y, ny) * TAU / nx as f64;
+                }
+            }
+            assert!((sum - 1.0).abs() < 1e-4, "{sum}");
+        }
+    }
+
+    /// Samples fall into 12 x 8 cells as often as the density says (chi-squared, 4 sigma of its
+    /// normal approximation).
+    #[test]
+    fn samples_follow_the_density() {
+        for env in environments() {
+            let (nx, ny, fine) = (12, 8, 24);
+            let mut expected = vec![0.0; nx * ny];
+            for y in 0..ny * fine * 8 {
+                for x in 0..nx * fine * 8 {
+                    let (w, h) = ((nx * fine * 8) as f64, ny * fine * 8);
+                    let d = texel_direction((x as f64 + 0.5) / w, (y as f64 + 0.5) / h as f64);
+                    expected[y / (fine * 8) * nx + x / (fine * 8)] +=
+                        f64::from(env.eval(d).1) * band(y, h) * TAU / w;
+                }
+            }
+            let n = 1 << 16;
+            let mut seen = vec![0.0; nx * ny];
+            for i in 0..n {
+                let mut p = crate::sampling::Rng::new(4, i);
+                let s = env.sample([p.uniform_f32(), p.uniform_f32()]).unwrap();
+                let (radiance, pdf) = env.eval(s.dir);
+                // Rounding may carry a direction over a texel's edge, rarely.
+                if (pdf - s.pdf).abs() > 1e-5 * s.pdf {
+                    assert!(radiance != s.radiance);
+                }
+                let azimuth = 0.5 + f64::from(s.dir.x).atan2(-f64::from(s.dir.z)) / TAU;
+                let polar = f64::from(s.dir.y).clamp(-1.0, 1.0).acos() / PI;
+                let cell = ((polar * ny as f64) as usize).min(ny - 1) * nx
+                    + ((azimuth * nx as f64) as usize).min(nx - 1);
+                seen[cell] += 1.0;
+            }
+            let (mut chi2, mut cells) = (0.0, 0.0);
+            for (e, s) in expected.iter().zip(&seen) {
+                let e = e * n as f64;
+                if e > 5.0 {
+                    chi2 += (s - e) * (s - e) / e;
+                    cells += 1.0;
+                }
+            }
+            let z = (chi2 - (cells - 1.0)) / (2.0f64 * (cells - 1.0)).sqrt().max(1.0);
+            assert!(z < 4.0, "z = {z} of {cells} cells");
+        }
+    }
+
+    #[test]
+    fn sampled_mean_is_the_mean() {
+        for env in environments() {
+            let net = Sobol::new(7);
+            let (n, mut sum) = (4096, glam::DVec3::ZERO);
+            for i in 0..n {
+                let u = net.point(i);
+                let s = env.sample([u[0], u[1]]).unwrap();
+                sum += (s.radiance / s.pdf).as_dvec3();
+            }
+            let mean = (sum / f64::from(n) / (4.0 * PI)).as_vec3();
+            let error = (luminance(mean) / luminance(env.mean()) - 1.0).abs();
+            assert!(error < 1e-3, "{error}");
+        }
+    }
+
+    #[test]
+    fn turning_moves_the_light() {
+        let mut texels = vec![Rgb::ZERO; 8 * 4];
+        texels[8 + 4] = Rgb::ONE;
+        let env = Environment::new(8, 4, texels);
+        let from = env.sample([0.5, 0.5]).unwrap().dir;
+        let turned = env.turned(90.0).sample([0.5, 0.5]).unwrap().dir;
+        let expected = glam::Quat::from_rotation_y(90f32.to_radians()) * from;
+        assert!((turned - expected).length() < 1e-5);
+    }
+
+    #[test]
+    fn black_has_no_samples() {
+        assert!(
+            Environment::new(2, 1, vec![Rgb::ZERO; 2])
+                .sample([0.3, 0.3])
+                .is_none()
+        );
+    }
+}

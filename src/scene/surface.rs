@@ -1,0 +1,158 @@
+//! The skin under the fur: triangles that scatter like matte paint.
+
+use super::SceneError;
+use super::accel::{Accel, Ray};
+use super::strands::UNITS_PER_METER;
+use crate::color::Rgb;
+use crate::skin::Skin;
+use glam::Vec3;
+
+/// Triangles ready for tracing, in traversal order.
+pub struct Surface {
+    corners: Vec<[Vec3; 3]>,
+    normals: Vec<[Vec3; 3]>,
+    color: Rgb,
+    accel: Accel,
+}
+
+/// A point of a matte surface met by a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceHit {
+    /// Distance along the ray, millimeters.
+    pub t: f32,
+    /// Unit geometric normal, on the side the ray came from.
+    pub facing: Vec3,
+    /// Unit shading normal, on the same side.
+    pub normal: Vec3,
+    /// Diffuse reflectance.
+    pub color: Rgb,
+}
+
+impl Surface {
+    /// * `color`: linear reflectance 0..1 of the whole skin.
+    pub fn build(skin: &Skin, color: Rgb) -> Result<Self, SceneError> {
+        let bad = skin.normals.len() != skin.positions.len()
+            || (skin.triangles.iter().flatten()).any(|&i| i as usize >= skin.positions.len());
+        if bad {
+            return Err(SceneError::Skin {
+                vertices: skin.positions.len(),
+            });
+        }
+        let pick =
+            |values: &[Vec3], t: &[u32; 3], scale: f32| t.map(|i| values[i as usize] * scale);
+        // Triangles without area cannot be seen and would only crowd the tree.
+        let solid: Vec<&[u32; 3]> = (skin.triangles.iter())
+            .filter(|t| {
+                let [a, b, c] = pick(&skin.positions, t, UNITS_PER_METER);
+                (b - a).cross(c - a).length_squared() > 0.0 || !(a + b + c).is_finite()
+            })
+            .collect();
+        let boxes: Vec<(Vec3, Vec3)> = solid
+            .iter()
+            .map(|t| pick(&skin.positions, t, UNITS_PER_METER))
+            .map(|[a, b, c]| (a.min(b).min(c), a.max(b).max(c)))
+            .collect();
+        let accel = Accel::build(&boxes)?;
+        let sorted = || accel.order().iter().map(|&i| solid[i as usize]);
+        Ok(Self {
+            corners: sorted()
+                .map(|t| pick(&skin.positions, t, UNITS_PER_METER))
+                .collect(),
+            normals: sorted().map(|t| pick(&skin.normals, t, 1.0)).collect(),
+            color,
+            accel,
+        })
+    }
+
+    /// Corners of all triangles, millimeters.
+    pub fn corners(&self) -> &[[Vec3; 3]] {
+        &self.corners
+    }
+
+    /// The nearest point in front of `limit`.
+    pub fn closest(&self, ray: &Ray, limit: f32) -> Option<SurfaceHit> {
+        let shear = Shear::new(ray.dir);
+        let (prim, t) = self.accel.closest(ray, limit, |prim, best| {
+            let (t, _) = shear.intersect(ray.origin, &self.corners[prim])?;
+            (t > 0.0 && t <= best).then_some(t)
+        })?;
+        let [a, b, c] = self.corners[prim];
+        let (_, [u, v, w]) = shear.intersect(ray.origin, &self.corners[prim])?;
+        let flat = (b - a).cross(c - a).normalize_or(-ray.dir);
+        let facing = if flat.dot(ray.dir) > 0.0 { -flat } else { flat };
+        let [na, nb, nc] = self.normals[prim];
+        let smooth = (u * na + v * nb + w * nc).normalize_or(facing);
+        let normal = if smooth.dot(facing) < 0.0 {
+            -smooth
+        } else {
+            smooth
+        };
+        Some(SurfaceHit {
+            t,
+            facing,
+            normal,
+            color: self.color,
+        })
+    }
+
+    /// Whether any triangle lies in front of `limit`.
+    pub fn occluded(&self, ray: &Ray, limit: f32) -> bool {
+        let shear = Shear::new(ray.dir);
+        self.accel.any(ray, limit, |prim, best| {
+            shear
+                .intersect(ray.origin, &self.corners[prim])
+                .is_some_and(|(t, _)| t > 0.0 && t < best)
+        })
+    }
+}
+
+/// The watertight test of Woop, Benthin and Wald (2013): a shear makes the ray a coordinate axis, so
+/// that neighbors decide about their common edge from the same numbers.
+struct Shear {
+    axes: [usize; 3],
+    shear: [f32; 3],
+}
+
+impl Shear {
+    fn new(dir: Vec3) -> Self {
+        let a = dir.abs();
+        let z = if a.x >= a.y && a.x >= a.z {
+            0
+        } else if a.y >= a.z {
+            1
+        } else {
+            2
+        };
+        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+        Self {
+            axes: [x, y, z],
+            shear: [dir[x] / dir[z], dir[y] / dir[z], 1.0 / dir[z]],
+        }
+    }
+
+    /// Distance and barycentric coordinates; both sides count.
+    #[inline(always)]
+    fn intersect(&self, origin: Vec3, corners: &[Vec3; 3]) -> Option<(f32, [f32; 3])> {
+        let [x, y, z] = self.axes;
+        let [sx, sy, sz] = self.shear;
+        let p = corners.map(|c| c - origin);
+        let flat = p.map(|p| (p[x] - sx * p[z], p[y] - sy * p[z]));
+        // Products of two single-precision numbers are exact in double precision.
+        let cross = |(ax, ay): (f32, f32), (bx, by): (f32, f32)| {
+            f64::from(ax) * f64::from(by) - f64::from(ay) * f64::from(bx)
+        };
+        let u = cross(flat[1], flat[2]);
+        let v = cross(flat[2], flat[0]);
+        let w = cross(flat[0], flat[1]);
+        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+            return None;
+        }
+        let sum = u + v + w;
+        if sum == 0.0 {
+            return None;
+        }
+        let weights = [u / sum, v / sum, w / sum].map(|b| b as f32);
+        let depth = weights[0] * p[0][z] + weights[1] * p[1][z] + weights[2] * p[2][z];
+        Some((sz * depth, weights))
+    }
+}
