@@ -13,6 +13,7 @@
 //! makes tables usable by a renderer. [`groom`] grows strands on a [`skin`]; [`scene`] gathers
 //! everything that [`render`] needs; [`image`] writes pictures.
 
+pub mod assembly;
 pub mod bake;
 pub mod blame;
 pub mod bsdf;

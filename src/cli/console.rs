@@ -16,16 +16,7 @@ impl Console {
     /// * `quiet`: no bars, no remarks.
     pub fn new(quiet: bool) -> Self {
         let cancel = Cancel::default();
-        let flag = cancel.clone();
-        // A second Ctrl-C ends at once, for when the first one is not obeyed soon enough.
-        let handler = move || {
-            if flag.is_cancelled() {
-                std::process::exit(i32::from(signal_exit_code_value()));
-            }
-            flag.cancel();
-        };
-        // Only a second handler in one process fails; then the first one keeps its flag.
-        let _ = ctrlc::set_handler(handler);
+        super::signals::listen(cancel.clone());
         Self {
             quiet,
             cancel,
@@ -107,14 +98,4 @@ fn short_count(value: f64) -> String {
         v if v >= 1e3 => format!("{:.1} k", v / 1e3),
         v => format!("{v:.1} "),
     }
-}
-
-/// 128 + SIGINT. The signal crate reports SIGINT and SIGTERM alike.
-fn signal_exit_code_value() -> u8 {
-    130
-}
-
-/// Exit code after a signal.
-pub(super) fn signal_exit_code() -> u8 {
-    signal_exit_code_value()
 }

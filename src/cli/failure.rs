@@ -41,7 +41,7 @@ impl Failure {
             Blame::Input => 1,
             Blame::Environment => 2,
             Blame::Internal => 3,
-            Blame::Interrupted => super::console::signal_exit_code(),
+            Blame::Interrupted => super::signals::exit_code(),
         })
     }
 }

@@ -4,8 +4,11 @@
 //! 2 environment failed (file, disk, memory), 3 internal error, 130 or 143 stopped by a signal with
 //! the finished work kept.
 
+mod bake;
+mod cache;
 mod console;
 mod failure;
+mod signals;
 mod species;
 mod species_report;
 mod table;
@@ -13,6 +16,7 @@ mod table;
 pub use console::Console;
 pub use failure::Failure;
 
+use crate::blame::Blame;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
@@ -29,10 +33,14 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Show the built-in animals and check species files.
+    Species(species::Args),
+    /// Trace photons through a fiber into a scattering table.
+    Bake(bake::Args),
     /// Look into scattering tables, dye them, draw them.
     Table(table::Args),
-    /// Shows the built-in animals and checks species files.
-    Species(species::Args),
+    /// Show or clear the cache of baked tables.
+    Cache(cache::Args),
 }
 
 /// Parses the command line, runs the command and returns the exit code.
@@ -58,7 +66,26 @@ pub fn run() -> ExitCode {
 
 fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
     match command {
-        Command::Table(args) => table::run(&args, console),
         Command::Species(args) => species::run(&args, console),
+        Command::Table(args) => table::run(&args, console),
+        Command::Bake(args) => bake::run(&args, console),
+        Command::Cache(args) => cache::run(&args, console),
     }
+}
+
+/// Runs `work` on a pool of so many threads, or on all cores.
+fn with_threads<T: Send>(
+    threads: Option<usize>,
+    work: impl FnOnce() -> T + Send,
+) -> Result<T, Failure> {
+    let Some(threads) = threads else {
+        return Ok(work());
+    };
+    if !(1..=1024).contains(&threads) {
+        let message = format!("--threads is {threads}, must be 1 to 1024");
+        return Err(Failure::new(Blame::Input, message));
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|e| Failure::new(Blame::Environment, e))?;
+    Ok(pool.install(work))
 }

@@ -6,7 +6,7 @@
 //! channels, so `pdf = mean(density) / mean(albedo)` holds identically and a gray table has
 //! throughput exactly `albedo`.
 
-use super::{Mode, Nodes};
+use super::{Mode, Nodes, ScatterMaps};
 use crate::color::Rgb;
 use crate::math::frame;
 use crate::math::unicube::Unicube;
@@ -224,6 +224,12 @@ fn sum_quads(coarse: &mut [f32], fine: &[f32], res: usize) {
         let (face, y, x) = (i / (res * res), i / res % res, i % res);
         let at = |dy: usize, dx: usize| fine[(face * 2 * res + 2 * y + dy) * 2 * res + 2 * x + dx];
         *sum = at(0, 0) + at(0, 1) + at(1, 0) + at(1, 1);
+    }
+}
+
+impl From<ScatterMaps> for ScatterTable {
+    fn from(maps: ScatterMaps) -> Self {
+        Self::new(maps.nodes, maps.res, maps.rgb)
     }
 }
 

@@ -1,0 +1,97 @@
+//! From a species to what a scene needs: the one library module that knows bake and renderer.
+
+use crate::bake::{BakeError, Baked, Cache, Settings, find_or_bake};
+use crate::blame::Blame;
+use crate::bsdf::{HairMaterial, TableSet, Zone};
+use crate::progress::{Cancel, Progress};
+use crate::species::{HairClass, Species, Station};
+use crate::table::{Provenance, ScatterTable, TableError};
+
+/// Materials that cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum AssemblyError {
+    /// No table.
+    #[error(transparent)]
+    Bake(#[from] BakeError),
+    /// The table cannot be dyed.
+    #[error(transparent)]
+    Dye(#[from] TableError),
+}
+
+impl AssemblyError {
+    /// Who has to act.
+    pub fn blame(&self) -> Blame {
+        match self {
+            Self::Bake(error) => error.blame(),
+            Self::Dye(error) => error.blame(),
+        }
+    }
+}
+
+/// Finds or bakes the table of one station.
+pub fn station_table(
+    species: &Species,
+    class: &HairClass,
+    station: &Station,
+    settings: &Settings,
+    cache: Option<&Cache>,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Baked, BakeError> {
+    let provenance = Provenance {
+        species: species.id.clone(),
+        class: class.name.clone(),
+        station: station.at,
+        species_text: species.text.clone(),
+        ..Provenance::default()
+    };
+    find_or_bake(
+        &station.structure,
+        settings,
+        provenance,
+        cache,
+        progress,
+        cancel,
+    )
+}
+
+/// The materials of all hair classes: every station baked once, dyed for every pigment zone.
+///
+/// # Errors
+/// A fiber that cannot be built or dyed, or [`BakeError::Stopped`]: a picture needs all its tables.
+pub fn materials(
+    species: &Species,
+    settings: &Settings,
+    cache: Option<&Cache>,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Vec<HairMaterial>, AssemblyError> {
+    let mut materials = Vec::with_capacity(species.classes.len());
+    for class in &species.classes {
+        let zones = class.pigment.iter().map(|band| Zone {
+            to_mm: band.to_mm as f32,
+            softness_mm: band.softness_mm as f32,
+        });
+        let mut tables = Vec::with_capacity(class.stations.len() * class.pigment.len());
+        for station in &class.stations {
+            let baked = station_table(species, class, station, settings, cache, progress, cancel)?;
+            if !baked.complete {
+                return Err(BakeError::Stopped.into());
+            }
+            for band in &class.pigment {
+                tables.push(ScatterTable::from(
+                    baked.table.dye(band.absorption_per_um())?,
+                ));
+            }
+        }
+        let stations = class
+            .stations
+            .iter()
+            .map(|station| station.at as f32)
+            .collect();
+        // A validated class has as many tables as stations times bands, and at least one.
+        materials
+            .extend(TableSet::new(stations, zones.collect(), tables).map(HairMaterial::Tables));
+    }
+    Ok(materials)
+}

@@ -1,0 +1,45 @@
+//! `vair cache`: where baked tables are kept, how much there is, and away with it.
+
+use super::{Console, Failure};
+use crate::bake::Cache;
+use crate::blame::Blame;
+
+/// Arguments of `vair cache`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Action {
+    /// Folder, number of tables and their size.
+    Info,
+    /// Remove all tables.
+    Clear,
+}
+
+/// Runs the command.
+pub(super) fn run(args: &Args, _console: &Console) -> Result<(), Failure> {
+    let cache = Cache::of_user().ok_or_else(no_cache)?;
+    let (what, size) = match args.action {
+        Action::Info => ("holds", cache.size()),
+        Action::Clear => ("is now rid of", cache.clear()),
+    };
+    let megabytes = size.bytes as f64 / 1e6;
+    println!(
+        "{} {what} {} tables, {megabytes:.1} MB",
+        cache.folder().display(),
+        size.tables
+    );
+    Ok(())
+}
+
+fn no_cache() -> Failure {
+    let help = "set VAIR_CACHE to a folder, or pass --no-cache";
+    Failure::with_help(
+        Blame::Environment,
+        "this system names no cache folder",
+        help,
+    )
+}
