@@ -55,7 +55,7 @@ fn chi_squared(bsdf: &Bsdf<'_>, wo: Vec3, seed: u64, distort: impl Fn(Vec3) -> f
         counts[cells.texel(sample.wi.as_dvec3())] += 1;
     }
     // Cells of small expectation are pooled.
-    let (mut chi2, mut freedom) = (0.0, -1.0);
+    let (mut chi2, mut freedom) = (0.0f64, -1.0f64);
     let (mut pooled, mut pooled_count) = (0.0, 0.0);
     for (&e, &c) in expected.iter().zip(&counts) {
         if e < 20.0 {
@@ -71,7 +71,7 @@ fn chi_squared(bsdf: &Bsdf<'_>, wo: Vec3, seed: u64, distort: impl Fn(Vec3) -> f
         freedom += 1.0;
     }
     // Wilson and Hilferty: the cube root of chi2 / n is nearly normal.
-    let n: f64 = freedom.max(1.0);
+    let n = freedom.max(1.0);
     ((chi2 / n).powf(1.0 / 3.0) - (1.0 - 2.0 / (9.0 * n))) / (2.0 / (9.0 * n)).sqrt()
 }
 
