@@ -1,14 +1,19 @@
 //! The skin that fur grows on: built-in shapes and meshes from files.
 
+mod body;
 mod builtin;
 mod error;
+mod sculpt;
+mod surface_nets;
+#[cfg(test)]
+mod tests;
 
 pub use error::SkinError;
 
 use glam::{Vec2, Vec3};
 
 /// Names that [`load`] knows without a file.
-pub const BUILT_IN: [&str; 3] = ["ball", "swatch", "tress"];
+pub const BUILT_IN: [&str; 4] = ["body", "ball", "swatch", "tress"];
 
 /// A triangle mesh in meters, Y up, with what a groom needs at each vertex. All arrays but
 /// `triangles` and `warnings` have the same length; indices are in range, numbers finite.
@@ -35,6 +40,8 @@ pub struct Skin {
     pub triangles: Vec<[u32; 3]>,
     /// How far strands leave their lay and hang down, 0 (fur keeps its lay) .. 1 (hair hangs).
     pub gravity: f32,
+    /// Height of the ground that the subject rests on, meters; strands stay above it.
+    pub floor: Option<f32>,
     /// Direction from the subject to a camera that shows it well, unit.
     pub view: Vec3,
     /// What the loader mended or finds odd, one sentence each; empty for built-in skins.
@@ -47,6 +54,7 @@ pub struct Skin {
 /// [`SkinError`] names the file, what is wrong and where.
 pub fn load(name_or_path: &str) -> Result<Skin, SkinError> {
     match name_or_path {
+        "body" => Ok(body::body()),
         "ball" => Ok(builtin::ball()),
         "swatch" => Ok(builtin::swatch()),
         "tress" => Ok(builtin::tress()),
