@@ -10,7 +10,7 @@ mod material;
 pub use material::{HairMaterial, TableSet, Zone};
 
 use crate::color::Rgb;
-use crate::table::ScatterTable;
+use crate::table::Lobe;
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -25,58 +25,57 @@ pub struct BsdfSample {
     pub pdf: f32,
 }
 
-/// A scattering model at one point of a strand.
+/// Scattering at one point of a strand toward one direction `wo`.
 #[derive(Clone, Copy, Debug)]
 pub enum Bsdf<'a> {
     /// Scatters evenly over the sphere with the given albedo: `density = albedo / 4 pi`. Closed
     /// form, for tests of the renderer.
     Isotropic(Rgb),
-    /// Baked tables.
-    Tables(Blend<'a>),
-}
-
-/// A weighted blend of up to four tables (two stations x two pigment zones); the weights sum to 1.
-/// Unused places have weight 0.
-#[derive(Clone, Copy, Debug)]
-pub struct Blend<'a>([(&'a ScatterTable, f32); 4]);
-
-impl Blend<'_> {
-    fn used(&self) -> impl Iterator<Item = (&ScatterTable, f32)> {
-        self.0
-            .iter()
-            .filter(|(_, weight)| *weight > 0.0)
-            .map(|&(table, weight)| (table, weight))
-    }
+    /// A baked table.
+    Table(Lobe<'a>),
 }
 
 impl Bsdf<'_> {
     /// `S(wi, wo) cos(theta_i)` per steradian.
-    pub fn density(&self, wo: Vec3, wi: Vec3) -> Rgb {
+    pub fn density(&self, wi: Vec3) -> Rgb {
         match self {
             Self::Isotropic(albedo) => *albedo / (4.0 * PI),
-            Self::Tables(blend) => blend.used().map(|(t, w)| t.density(wo, wi) * w).sum(),
+            Self::Table(lobe) => lobe.density(wi),
         }
     }
 
     /// Density per steradian with which [`Bsdf::sample`] draws `wi`.
-    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+    pub fn pdf(&self, wi: Vec3) -> f32 {
         match self {
             Self::Isotropic(_) => 1.0 / (4.0 * PI),
-            Self::Tables(_) => {
-                let albedo = self.albedo(wo).element_sum();
-                if albedo > 0.0 {
-                    self.density(wo, wi).element_sum() / albedo
-                } else {
-                    0.0
-                }
+            Self::Table(lobe) => self.table_pdf(lobe, lobe.density(wi)),
+        }
+    }
+
+    /// [`Bsdf::density`] and [`Bsdf::pdf`] for the price of one look-up.
+    pub fn density_and_pdf(&self, wi: Vec3) -> (Rgb, f32) {
+        match self {
+            Self::Isotropic(_) => (self.density(wi), self.pdf(wi)),
+            Self::Table(lobe) => {
+                let density = lobe.density(wi);
+                (density, self.table_pdf(lobe, density))
             }
         }
     }
 
+    fn table_pdf(&self, lobe: &Lobe<'_>, density: Rgb) -> f32 {
+        let albedo = lobe.albedo().element_sum();
+        if albedo > 0.0 {
+            density.element_sum() / albedo
+        } else {
+            0.0
+        }
+    }
+
     /// Draws a direction from three numbers in `[0, 1)`: the first two place the direction (they may
-    /// come from a low-discrepancy net), the third chooses table, node and face. `None` where the
-    /// albedo is zero.
-    pub fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<BsdfSample> {
+    /// come from a low-discrepancy net), the third chooses node and face. `None` where the albedo is
+    /// zero.
+    pub fn sample(&self, u: [f32; 3]) -> Option<BsdfSample> {
         match self {
             Self::Isotropic(albedo) => {
                 let z = 1.0 - 2.0 * u[0];
@@ -89,25 +88,9 @@ impl Bsdf<'_> {
                     pdf: 1.0 / (4.0 * PI),
                 })
             }
-            Self::Tables(blend) => {
-                let share = |t: &ScatterTable, w: f32| w * t.albedo(wo).element_sum();
-                let total: f32 = blend.used().map(|(t, w)| share(t, w)).sum();
-                let mut rest = u[2] * total;
-                let mut chosen = None;
-                for (table, weight) in blend.used() {
-                    let share = share(table, weight);
-                    if share > 0.0 {
-                        chosen = Some((table, (rest / share).min(1.0 - f32::EPSILON)));
-                        if rest < share {
-                            break;
-                        }
-                    }
-                    rest -= share;
-                }
-                let (table, pick) = chosen?;
-                let wi = table.sample(wo, [u[0], u[1], pick])?;
-                let density = self.density(wo, wi);
-                let pdf = density.element_sum() / total;
+            Self::Table(lobe) => {
+                let wi = lobe.sample(u)?;
+                let (density, pdf) = self.density_and_pdf(wi);
                 (pdf > 0.0).then(|| BsdfSample {
                     wi,
                     weight: density / pdf,
@@ -119,10 +102,10 @@ impl Bsdf<'_> {
 
     /// Share of light leaving along `wo` under even illumination: the integral of `density` over
     /// `wi`.
-    pub fn albedo(&self, wo: Vec3) -> Rgb {
+    pub fn albedo(&self) -> Rgb {
         match self {
             Self::Isotropic(albedo) => *albedo,
-            Self::Tables(blend) => blend.used().map(|(t, w)| t.albedo(wo) * w).sum(),
+            Self::Table(lobe) => lobe.albedo(),
         }
     }
 }

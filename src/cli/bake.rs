@@ -2,7 +2,7 @@
 
 use super::{Console, Failure};
 use crate::assembly::station_table;
-use crate::bake::{BakeError, Cache, Settings};
+use crate::bake::{Cache, Settings};
 use crate::blame::Blame;
 use crate::io::check_writable;
 use crate::species::{self, HairClass, Species, Station};
@@ -177,11 +177,5 @@ fn report(table: &StructureTable, console: &Console) {
     ));
     if table.nodes.mode == Mode::Paper && clear(|l| l.truncated) > 1e-3 * emitted {
         console.say("warning: the cap on events cuts off light; cone mode does not have it");
-    }
-}
-
-impl From<BakeError> for Failure {
-    fn from(error: BakeError) -> Self {
-        Self::new(error.blame(), error)
     }
 }

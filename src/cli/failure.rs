@@ -1,7 +1,6 @@
 //! What a command returns when it cannot do what was asked.
 
 use crate::blame::Blame;
-use crate::io::FileError;
 use std::process::ExitCode;
 
 /// A failed command: the report for the terminal and who has to act.
@@ -46,8 +45,25 @@ impl Failure {
     }
 }
 
-impl From<FileError> for Failure {
-    fn from(error: FileError) -> Self {
-        Self::new(error.blame(), error)
-    }
+/// Errors that know who has to act become failures with their own message.
+macro_rules! failures {
+    ($($error:ty),+ $(,)?) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::new(error.blame(), error)
+            }
+        })+
+    };
 }
+
+failures!(
+    crate::assembly::AssemblyError,
+    crate::bake::BakeError,
+    crate::groom::GroomError,
+    crate::io::FileError,
+    crate::render::RenderError,
+    crate::scene::EnvironmentError,
+    crate::scene::SceneError,
+    crate::skin::SkinError,
+    crate::table::TableError,
+);

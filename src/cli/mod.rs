@@ -8,6 +8,7 @@ mod bake;
 mod cache;
 mod console;
 mod failure;
+mod render;
 mod signals;
 mod species;
 mod species_report;
@@ -37,6 +38,8 @@ enum Command {
     Species(species::Args),
     /// Trace photons through a fiber into a scattering table.
     Bake(bake::Args),
+    /// Render a still of a species: bakes what it needs, grows the fur, traces the picture.
+    Render(render::Args),
     /// Look into scattering tables, dye them, draw them.
     Table(table::Args),
     /// Show or clear the cache of baked tables.
@@ -66,6 +69,7 @@ pub fn run() -> ExitCode {
 
 fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
     match command {
+        Command::Render(args) => render::run(&args, console),
         Command::Species(args) => species::run(&args, console),
         Command::Table(args) => table::run(&args, console),
         Command::Bake(args) => bake::run(&args, console),

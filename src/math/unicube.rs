@@ -26,8 +26,9 @@ pub fn unwarp(s: f64) -> f64 {
 /// Solid angle per unit of texture area at plane coordinates `(x, y)`.
 pub fn solid_angle_density(x: f64, y: f64) -> f64 {
     let (x2, y2) = (x * x, y * y);
+    let r2 = 1.0 + x2 + y2;
     FRAC_PI_6 * FRAC_PI_6 * (1.0 + x2) * (1.0 + y2) * ((2.0 + x2) * (2.0 + y2)).sqrt()
-        / (1.0 + x2 + y2).powf(1.5)
+        / (r2 * r2.sqrt())
 }
 
 /// The face of a direction and its plane coordinates in `[-1, 1]`. Ties go to X, then Y.

@@ -89,7 +89,7 @@ impl Integrator<'_> {
             out.radiance = backdrop();
             return out;
         };
-        let scatter = Scatter::new(self.scene, &ray, &hit, true);
+        let scatter = Scatter::new(self.scene, &ray, &hit, true, u[2]);
         let light = self.trace(&scatter, &draws, &mut out);
         if let (Hit::Ground(_), Some(ground)) = (&hit, &self.scene.ground) {
             // The backdrop, times the share of its light that the subject leaves to the floor.
@@ -130,7 +130,8 @@ impl Integrator<'_> {
                 let (light, light_pdf) = environment.eval(ray.dir);
                 return sum + throughput * light * self.escape_weight(direction.pdf, light_pdf);
             };
-            next = Scatter::new(self.scene, &ray, &hit, false);
+            let blend = draws.point(depth, Purpose::Choice)[2];
+            next = Scatter::new(self.scene, &ray, &hit, false, blend);
             scatter = &next;
         }
         out.capped = true;

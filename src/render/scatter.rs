@@ -19,7 +19,6 @@ enum Kind<'a> {
         bsdf: Bsdf<'a>,
         /// Strand frame to world.
         frame: Mat3,
-        wo: Vec3,
         hit: StrandHit,
         strands: &'a crate::scene::Strands,
     },
@@ -45,16 +44,17 @@ pub(super) struct Direction {
 
 impl<'a> Scatter<'a> {
     /// * `first`: whether the ray comes from the camera.
-    pub(super) fn new(scene: &'a Scene, ray: &Ray, hit: &Hit, first: bool) -> Self {
+    /// * `u`: a number in `[0, 1)` that chooses where materials blend.
+    pub(super) fn new(scene: &'a Scene, ray: &Ray, hit: &Hit, first: bool, u: f32) -> Self {
         let (t, kind) = match hit {
             Hit::Strand(hit) => {
                 let frame = strand_frame(hit.tangent, -ray.dir);
                 let wo = frame.transpose() * -ray.dir;
+                // Exactly in the half plane y = 0 that models expect.
+                let wo = Vec3::new(wo.x, 0.0, wo.z);
                 let kind = Kind::Strand {
-                    bsdf: scene.materials[hit.class as usize].at(hit.at, hit.tip_mm),
+                    bsdf: scene.materials[hit.class as usize].at(hit.at, hit.tip_mm, wo, u),
                     frame,
-                    // Exactly in the half plane y = 0 that models expect.
-                    wo: Vec3::new(wo.x, 0.0, wo.z),
                     hit: *hit,
                     strands: &scene.strands,
                 };
@@ -77,11 +77,9 @@ impl<'a> Scatter<'a> {
     /// Scattered share per steradian (with any cosine) and the density of [`Scatter::sample`].
     pub(super) fn eval(&self, dir: Vec3) -> (Rgb, f32) {
         match &self.kind {
-            Kind::Strand {
-                bsdf, frame, wo, ..
-            } => {
+            Kind::Strand { bsdf, frame, .. } => {
                 let wi = frame.transpose() * dir;
-                (bsdf.density(*wo, wi), bsdf.pdf(*wo, wi))
+                bsdf.density_and_pdf(wi)
             }
             Kind::Matte {
                 color,
@@ -98,10 +96,8 @@ impl<'a> Scatter<'a> {
     /// Draws a direction from three numbers in `[0, 1)`; `None` where nothing is scattered.
     pub(super) fn sample(&self, u: [f32; 3]) -> Option<Direction> {
         match &self.kind {
-            Kind::Strand {
-                bsdf, frame, wo, ..
-            } => {
-                let sample = bsdf.sample(*wo, u)?;
+            Kind::Strand { bsdf, frame, .. } => {
+                let sample = bsdf.sample(u)?;
                 Some(Direction {
                     dir: (*frame * sample.wi).normalize(),
                     weight: sample.weight,
@@ -149,7 +145,7 @@ impl<'a> Scatter<'a> {
     /// Share of even light that is scattered toward the viewer.
     pub(super) fn albedo(&self) -> Rgb {
         match &self.kind {
-            Kind::Strand { bsdf, wo, .. } => bsdf.albedo(*wo),
+            Kind::Strand { bsdf, .. } => bsdf.albedo(),
             Kind::Matte { color, .. } => *color,
         }
     }

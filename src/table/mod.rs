@@ -16,5 +16,5 @@ pub use self::exr::{FORMAT, TableFile};
 pub use error::TableError;
 pub use maps::ScatterMaps;
 pub use nodes::{Mode, Nodes};
-pub use scatter::ScatterTable;
+pub use scatter::{Lobe, ScatterTable};
 pub use structure::{Ledger, PHOTON, Provenance, StructureTable};

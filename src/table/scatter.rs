@@ -27,7 +27,14 @@ pub struct ScatterTable {
     albedo: Vec<Rgb>,
 }
 
-/// A look-up prepared for one query direction: the nodes that take part.
+/// The scattering for one query direction: the two nodes that take part and their shares.
+#[derive(Clone, Copy, Debug)]
+pub struct Lobe<'a> {
+    table: &'a ScatterTable,
+    parts: [Part; 2],
+    albedo: Rgb,
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Part {
     node: usize,
@@ -83,47 +90,8 @@ impl ScatterTable {
         self.cube.res()
     }
 
-    /// Share of light leaving along `wo` under even illumination.
-    pub fn albedo(&self, wo: Vec3) -> Rgb {
-        self.parts(wo)
-            .iter()
-            .map(|p| self.albedo[p.node] * p.weight)
-            .sum()
-    }
-
-    /// `S(wi, wo) cos(theta_i)` per steradian, in the strand frame of `wo` (`wo.y = 0`).
-    pub fn density(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        let wi = wi.as_dvec3();
-        self.parts(wo)
-            .iter()
-            .map(|p| self.part_density(p, wi) * p.weight)
-            .sum()
-    }
-
-    /// Draws `wi` with density `mean(density) / mean(albedo)`.
-    ///
-    /// * `u`: the first two numbers place the direction and keep their stratification, the third
-    ///   picks node and face.
-    /// * `None` where nothing is scattered.
-    pub fn sample(&self, wo: Vec3, u: [f32; 3]) -> Option<Vec3> {
-        let parts = self.parts(wo);
-        let share = |p: &Part| p.weight * self.albedo[p.node].element_sum();
-        let total = share(&parts[0]) + share(&parts[1]);
-        if total <= 0.0 {
-            return None;
-        }
-        let (second, pick) = split(u[2], share(&parts[0]) / total);
-        let part = &parts[usize::from(second)];
-        let (texel, a, b) = self.pick_texel(part.node, pick, u[0], u[1])?;
-        let (w, _) = self.cube.direction(texel, f64::from(a), f64::from(b));
-        Some(
-            frame::shift_inclination(w, -part.sin, part.cos)
-                .as_vec3()
-                .normalize(),
-        )
-    }
-
-    fn parts(&self, wo: Vec3) -> [Part; 2] {
+    /// The scattering for a query direction, strand frame (`wo.y = 0`).
+    pub fn lobe(&self, wo: Vec3) -> Lobe<'_> {
         let theta = f64::from(wo.z.atan2(wo.x.hypot(wo.y)));
         let (a, b, f) = self.nodes.bracket(theta);
         let part = |node: usize, weight: f64| {
@@ -138,7 +106,13 @@ impl ScatterTable {
                 cos,
             }
         };
-        [part(a, 1.0 - f), part(b, f)]
+        let parts = [part(a, 1.0 - f), part(b, f)];
+        let albedo = parts.iter().map(|p| self.albedo[p.node] * p.weight).sum();
+        Lobe {
+            table: self,
+            parts,
+            albedo,
+        }
     }
 
     /// Density of one node at `wi`. Sampling shifts node directions back by the angle, over the pole
@@ -203,6 +177,47 @@ impl ScatterTable {
         }
         let res = self.cube.res();
         Some(((face * res + y) * res + x, u, v))
+    }
+}
+
+impl Lobe<'_> {
+    /// Share of light leaving along the query direction under even illumination.
+    pub fn albedo(&self) -> Rgb {
+        self.albedo
+    }
+
+    /// `S(wi, wo) cos(theta_i)` per steradian.
+    pub fn density(&self, wi: Vec3) -> Rgb {
+        let wi = wi.as_dvec3();
+        self.parts
+            .iter()
+            .map(|p| self.table.part_density(p, wi) * p.weight)
+            .sum()
+    }
+
+    /// Draws `wi` with density `mean(density) / mean(albedo)`.
+    ///
+    /// * `u`: the first two numbers place the direction and keep their stratification, the third
+    ///   picks node and face.
+    /// * `None` where nothing is scattered.
+    pub fn sample(&self, u: [f32; 3]) -> Option<Vec3> {
+        let total = self.albedo.element_sum();
+        if total <= 0.0 {
+            return None;
+        }
+        let first = self.parts[0].weight * self.table.albedo[self.parts[0].node].element_sum();
+        let (second, pick) = split(u[2], first / total);
+        let part = &self.parts[usize::from(second)];
+        let (texel, a, b) = self.table.pick_texel(part.node, pick, u[0], u[1])?;
+        // Clear of the texel's rim by some units of the last place of `wi`, or its density would be
+        // looked up next door, where it may be zero.
+        let inside = |v: f32| f64::from(v.clamp(2e-5, 1.0 - 2e-5));
+        let (w, _) = self.table.cube.direction(texel, inside(a), inside(b));
+        Some(
+            frame::shift_inclination(w, -part.sin, part.cos)
+                .as_vec3()
+                .normalize(),
+        )
     }
 }
 
@@ -274,11 +289,13 @@ mod tests {
                 for texel in 0..fine.texels() {
                     let (w, _) = fine.direction(texel, 0.5, 0.5);
                     let solid = fine.solid_angle(texel) as f32;
-                    sum += table.density(wo(theta), w.as_vec3()) * solid;
+                    sum += table.lobe(wo(theta)).density(w.as_vec3()) * solid;
                 }
                 // Midpoint quadrature is poor at the pole of a shifted map, where the density is
                 // singular; a factor forgotten anywhere is far larger than this.
-                let error = (sum / table.albedo(wo(theta)) - 1.0).abs().max_element();
+                let error = (sum / table.lobe(wo(theta)).albedo() - 1.0)
+                    .abs()
+                    .max_element();
                 assert!(error < 0.03, "{mode:?} {theta}: {error}");
             }
         }
@@ -291,10 +308,10 @@ mod tests {
         table = ScatterTable::new(table.nodes.clone(), 16, gray);
         let mut rng = Rng::new(1, 1);
         for _ in 0..20_000 {
-            let wo = wo(3.1 * (rng.uniform() - 0.5));
+            let lobe = table.lobe(wo(3.1 * (rng.uniform() - 0.5)));
             let u = [rng.uniform_f32(), rng.uniform_f32(), rng.uniform_f32()];
-            let wi = table.sample(wo, u).unwrap();
-            let f = table.density(wo, wi);
+            let wi = lobe.sample(u).unwrap();
+            let f = lobe.density(wi);
             assert!(
                 f.min_element() > 0.0,
                 "sampled where the density is zero: {wi}"
@@ -306,7 +323,7 @@ mod tests {
     fn empty_tables_scatter_nothing() {
         let nodes = Nodes::new(Mode::Cone, 4);
         let table = ScatterTable::new(nodes, 8, vec![[0.0; 3]; 4 * 6 * 64]);
-        assert!(table.sample(wo(0.2), [0.3, 0.4, 0.5]).is_none());
-        assert_eq!(table.density(wo(0.2), Vec3::X), Rgb::ZERO);
+        assert!(table.lobe(wo(0.2)).sample([0.3, 0.4, 0.5]).is_none());
+        assert_eq!(table.lobe(wo(0.2)).density(Vec3::X), Rgb::ZERO);
     }
 }

@@ -4,7 +4,7 @@ mod dye;
 mod info;
 
 use super::{Console, Failure};
-use crate::table::TableError;
+
 use clap::Subcommand;
 
 /// Options of `vair table`.
@@ -27,11 +27,5 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     match &args.command {
         Command::Info(args) => info::run(args),
         Command::Dye(args) => dye::run(args, console),
-    }
-}
-
-impl From<TableError> for Failure {
-    fn from(error: TableError) -> Self {
-        Self::new(error.blame(), error)
     }
 }
