@@ -3,8 +3,29 @@
 //! Fiber frame: +Z is the tangent, root to tip; micrometers. The geometry repeats along z with
 //! [`Fiber::period_um`]; rays may start and end at any z.
 
-use crate::species::Structure;
+mod error;
+mod froth;
+mod ladder;
+mod march;
+mod medulla;
+mod packing;
+mod pattern;
+mod scales;
+mod section;
+mod surface;
+
+#[cfg(test)]
+mod tests;
+
+pub use error::FiberError;
+
+use crate::species::{CuticlePattern, MedullaKind, Structure};
 use glam::DVec3;
+use medulla::{Medulla, Rays};
+use pattern::Pattern;
+use scales::Scales;
+use section::Section;
+use surface::{Inward, OuterHit, OuterState, Surface};
 
 /// What fills the space between boundaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +34,8 @@ pub enum Region {
     Outside,
     /// Cuticle and cortex: pigmented keratin.
     Cortex,
-    /// Medulla: a homogeneous scattering medium with the cortex's index.
+    /// The medulla between its voids, or all of it where it is a homogeneous scattering medium. It
+    /// has the cortex's index. Where its pigment is the cortex's too, its walls are `Cortex`.
     Medulla,
     /// A void of the medulla.
     Void,
@@ -48,33 +70,65 @@ pub struct Hit {
     pub state: HitState,
 }
 
-/// See [`Hit::state`].
-#[derive(Clone, Copy, Debug, Default)]
+/// Which boundary element a ray starts on. See [`Hit::state`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HitState {
-    /// Which boundary and element; meaning private to `fiber`.
-    pub element: u32,
+    element: Element,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Element {
+    Outer(OuterState),
+    /// The outline of the medulla.
+    Outline,
+    Void(u32),
 }
 
 /// One period of a fiber.
 #[derive(Clone, Debug)]
 pub struct Fiber {
     structure: Structure,
-}
-
-/// A structure that cannot be built.
-#[derive(Debug, thiserror::Error)]
-pub enum FiberError {
-    /// The scales are higher than the fiber is wide, or similar.
-    #[error("the structure cannot be built: {0}")]
-    Impossible(String),
+    section: Section,
+    surface: Surface,
+    medulla: Medulla,
+    period_um: f64,
 }
 
 impl Fiber {
     /// Builds the geometry of a structure. `seed` places scales and voids.
+    ///
+    /// # Errors
+    /// When the parts do not fit into each other: scales higher than a third of the radius, a
+    /// medulla that reaches the cuticle, septa thicker than the rungs' distance, a froth denser
+    /// than spheres can be packed.
     pub fn build(structure: &Structure, seed: u64) -> Result<Self, FiberError> {
-        let _ = seed;
+        let section = Section::new(structure.diameter_um, structure.aspect);
+        let cuticle = &structure.cuticle;
+        if cuticle.pattern != CuticlePattern::Smooth && cuticle.height_um > section.b / 3.0 {
+            return Err(FiberError::ScalesTooHigh {
+                height_um: cuticle.height_um,
+                radius_um: section.b,
+            });
+        }
+        let flat = cuticle.height_um <= 0.0;
+        let lines = section.lines(section.line_count());
+        let pattern = (!flat)
+            .then(|| Pattern::new(cuticle, &lines, seed))
+            .flatten();
+        let (surface, period_um) = match &pattern {
+            None => (Surface::Smooth, Medulla::period_um(structure)),
+            Some(pattern) => (
+                Surface::Scales(Box::new(Scales::new(pattern, &lines))),
+                pattern.period_um,
+            ),
+        };
+        let medulla = Medulla::new(structure, &section, surface.rho_min(), period_um, seed)?;
         Ok(Self {
             structure: structure.clone(),
+            section,
+            surface,
+            medulla,
+            period_um,
         })
     }
 
@@ -85,32 +139,63 @@ impl Fiber {
 
     /// Length of one period along z, micrometers; any length for a smooth cylinder.
     pub fn period_um(&self) -> f64 {
-        100.0
+        self.period_um
     }
 
     /// Radius of the smallest cylinder about z that holds the fiber, micrometers.
     pub fn bounding_radius_um(&self) -> f64 {
-        0.5 * self.structure.diameter_um * self.structure.aspect.sqrt()
+        self.section.a * self.surface.rho_max()
     }
 
-    /// Whether mirroring phi -> -phi gives the same statistics, so that tables may be folded.
+    /// Whether mirroring phi -> -phi gives the same statistics, so that tables may be folded. Holds
+    /// for every pattern here: none of them winds round the shaft.
     pub fn is_mirror_symmetric(&self) -> bool {
         true
     }
 
     /// Properties of a region.
     pub fn medium(&self, region: Region) -> Medium {
-        let ior = if region == Region::Outside {
-            1.0
-        } else {
-            self.structure.ior
-        };
-        Medium {
+        let medulla = &self.structure.medulla;
+        let clear = |ior, pigment| Medium {
             ior,
-            pigment: 1.0,
+            pigment,
             scattering_per_um: 0.0,
             asymmetry: 0.0,
+        };
+        match region {
+            Region::Outside => clear(1.0, 0.0),
+            Region::Cortex => clear(self.structure.ior, 1.0),
+            Region::Void => clear(medulla.void_ior, 0.0),
+            Region::Medulla => {
+                let (scattering_per_um, asymmetry) = match medulla.kind {
+                    MedullaKind::Medium {
+                        scattering_per_um,
+                        asymmetry,
+                    } => (scattering_per_um, asymmetry),
+                    _ => (0.0, 0.0),
+                };
+                Medium {
+                    scattering_per_um,
+                    asymmetry,
+                    ..clear(self.structure.ior, medulla.pigment)
+                }
+            }
         }
+    }
+
+    /// The region that holds a point, found from the shapes alone, without any ray.
+    pub fn region_at(&self, point: DVec3) -> Region {
+        let unit = DVec3::new(point.x / self.section.a, point.y / self.section.b, point.z);
+        if self.surface.contains(unit) {
+            self.medulla.region_at(&self.section, point)
+        } else {
+            Region::Outside
+        }
+    }
+
+    /// Share of the medulla's volume that is voids; 0 without voids.
+    pub fn air_fraction(&self) -> f64 {
+        self.medulla.air_fraction(&self.section, self.period_um)
     }
 
     /// The next boundary of a ray that travels in `region` from `origin` along unit `dir`.
@@ -126,32 +211,142 @@ impl Fiber {
         region: Region,
         from: Option<HitState>,
     ) -> Option<Hit> {
-        let _ = from;
-        let radius = 0.5 * self.structure.diameter_um;
-        let a = dir.x * dir.x + dir.y * dir.y;
-        let b = origin.x * dir.x + origin.y * dir.y;
-        let c = origin.x * origin.x + origin.y * origin.y - radius * radius;
-        let root = (b * b - a * c).max(0.0).sqrt();
-        let t = if region == Region::Outside {
-            (-b - root) / a
-        } else {
-            (-b + root) / a
+        let rays = Rays {
+            origin,
+            dir,
+            unit: self.section.unit_ray(origin, dir),
         };
-        if region == Region::Outside && (b * b < a * c || t <= 1e-9 * radius) {
+        let element = from.map(|f| f.element);
+        let outer = match element {
+            Some(Element::Outer(state)) => Some(state),
+            _ => None,
+        };
+        match region {
+            Region::Outside if from.is_none() => {
+                // Far origins cost digits: start beside the axis, on the way in.
+                let [a, b, _] = rays.unit.radius_squared();
+                let ahead = if a > 0.0 { (-b / a).max(0.0) } else { 0.0 };
+                let ahead = (ahead - 2.0 * self.surface.rho_max() / a.sqrt()).max(0.0);
+                let mut hit = self.enter(origin + ahead * dir, dir, None)?;
+                hit.t += ahead;
+                Some(hit)
+            }
+            Region::Outside => self.enter(origin, dir, outer),
+            Region::Cortex => {
+                let core = |t0, t1| self.core_hit(&rays, t0, t1, element);
+                match self.surface.leave(&rays.unit, outer, core) {
+                    Inward::Outer(hit) => Some(self.outer_hit(&rays, hit, Region::Outside)),
+                    Inward::Core(hit) => Some(hit),
+                    Inward::Lost => None,
+                }
+            }
+            Region::Medulla => self.medulla_hit(&rays, element),
+            Region::Void => {
+                let void = match element {
+                    Some(Element::Void(index)) => Some(index),
+                    _ => None,
+                };
+                let (t, index) = self.medulla.leave_void(&rays, void)?;
+                Some(self.void_hit(&rays, t, index, self.medulla.matrix()))
+            }
+        }
+    }
+
+    /// Where a ray outside enters the fiber.
+    fn enter(&self, origin: DVec3, dir: DVec3, from: Option<OuterState>) -> Option<Hit> {
+        let unit = self.section.unit_ray(origin, dir);
+        let hit = self.surface.enter(&unit, from)?;
+        Some(self.outer_hit(&Rays { origin, dir, unit }, hit, Region::Cortex))
+    }
+
+    /// What of the core a ray in the cortex meets in `t0..t1`.
+    fn core_hit(&self, rays: &Rays, t0: f64, t1: f64, from: Option<Element>) -> Option<Hit> {
+        if self.medulla.ratio <= 0.0 {
             return None;
         }
-        let p = origin + t * dir;
-        let n = DVec3::new(p.x, p.y, 0.0).normalize();
-        let (normal, to) = match region {
-            Region::Outside => (n, Region::Cortex),
-            _ => (-n, Region::Outside),
+        if self.medulla.outlined {
+            // The outline is convex: a ray that has just left it does not come back.
+            if from == Some(Element::Outline) {
+                return None;
+            }
+            let (t, _) = rays.unit.inside_circle(self.medulla.ratio)?;
+            return (t >= t0 && t < t1).then(|| self.outline_hit(rays, t, Region::Medulla));
+        }
+        self.next_void(rays, t0, t1, from)
+    }
+
+    fn next_void(&self, rays: &Rays, t0: f64, t1: f64, from: Option<Element>) -> Option<Hit> {
+        let from = match from {
+            Some(Element::Void(index)) => Some(index),
+            _ => None,
         };
-        Some(Hit {
+        let (t, index) = self.medulla.enter_void(rays, t0, t1, from)?;
+        Some(self.void_hit(rays, t, index, Region::Void))
+    }
+
+    /// What a ray between the voids of an outlined medulla meets.
+    fn medulla_hit(&self, rays: &Rays, from: Option<Element>) -> Option<Hit> {
+        let [a, b, c] = rays.unit.radius_squared();
+        let t = if from == Some(Element::Outline) {
+            -2.0 * b / a
+        } else {
+            let c = c - self.medulla.ratio * self.medulla.ratio;
+            (-b + (b * b - a * c).max(0.0).sqrt()) / a
+        };
+        // An axial ray stays inside for ever.
+        let t = if t.is_nan() {
+            f64::INFINITY
+        } else {
+            t.max(0.0)
+        };
+        if let Some(hit) = self.next_void(rays, 0.0, t, from) {
+            return Some(hit);
+        }
+        t.is_finite()
+            .then(|| self.outline_hit(rays, t, Region::Cortex))
+    }
+
+    fn outer_hit(&self, rays: &Rays, hit: OuterHit, to: Region) -> Hit {
+        let cuticle = &self.structure.cuticle;
+        Hit {
+            t: hit.t,
+            normal: self.section.normal_against(hit.gradient, rays.dir),
+            to,
+            roughness: match hit.state {
+                OuterState::Riser { .. } => cuticle.riser_roughness,
+                OuterState::Smooth | OuterState::Face { .. } => cuticle.roughness,
+            },
+            state: HitState {
+                element: Element::Outer(hit.state),
+            },
+        }
+    }
+
+    fn outline_hit(&self, rays: &Rays, t: f64, to: Region) -> Hit {
+        let p = rays.unit.at(t);
+        let gradient = DVec3::new(p.x, p.y, 0.0);
+        Hit {
             t,
-            normal,
+            normal: self.section.normal_against(gradient, rays.dir),
             to,
             roughness: 0.0,
-            state: HitState::default(),
-        })
+            state: HitState {
+                element: Element::Outline,
+            },
+        }
+    }
+
+    fn void_hit(&self, rays: &Rays, t: f64, index: u32, to: Region) -> Hit {
+        let point = rays.origin + t * rays.dir;
+        let gradient = self.medulla.void_gradient(&self.section, point, index);
+        Hit {
+            t,
+            normal: self.section.normal_against(gradient, rays.dir),
+            to,
+            roughness: 0.0,
+            state: HitState {
+                element: Element::Void(index),
+            },
+        }
     }
 }

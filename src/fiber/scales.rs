@@ -1,0 +1,345 @@
+//! The scaled surface as closed geometry: sectors between axial half planes, each with a stack of
+//! strips along z.
+//!
+//! In the unit-circle frame the surface of a strip is `rho = 1 + E(u, z)`; `u = a / (a + b)` from the
+//! distances a and b to the sector's two half planes, so that neighbors agree on their common plane
+//! without any angle. `E` is linear in z and in u. A strip ends at the ruled surface
+//! `z = end(u)`; where the next strip's surface is lower or higher the difference is a riser, an
+//! exact wall.
+
+use super::pattern::Pattern;
+use super::section::{Line, Section};
+use glam::DVec3;
+
+/// One strip of one sector: values on the two half planes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Strip {
+    /// Upper end, micrometers.
+    pub(super) end: [f64; 2],
+    /// Height at z = 0 relative to the radius.
+    pub(super) height: [f64; 2],
+    /// Slope of the height, per micrometer.
+    pub(super) slope: [f64; 2],
+}
+
+/// A half plane from the axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane {
+    pub(super) cos: f64,
+    pub(super) sin: f64,
+}
+
+/// A cell and the whole periods between its own z and the ray's.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell {
+    pub(super) sector: usize,
+    pub(super) strip: usize,
+    pub(super) shift: f64,
+}
+
+/// The scaled surface of one period.
+#[derive(Clone, Debug)]
+pub(super) struct Scales {
+    pub(super) period: f64,
+    /// Half plane `i` begins sector `i`.
+    pub(super) planes: Vec<Plane>,
+    strips: Vec<Strip>,
+    /// Where the strips of a sector begin; one more entry than sectors.
+    first: Vec<u32>,
+    /// Sector that holds the start of each step of the pseudo-angle.
+    start_of_angle: Vec<u16>,
+    /// Radii that enclose the surface, with a margin above rounding.
+    pub(super) rho_min: f64,
+    pub(super) rho_max: f64,
+}
+
+/// Entries of the pseudo-angle table: a few per sector.
+const ANGLE_STEPS: usize = 1024;
+
+impl Scales {
+    /// Joins the lines of a pattern.
+    pub(super) fn new(pattern: &Pattern, lines: &[Line]) -> Self {
+        let planes: Vec<Plane> = lines
+            .iter()
+            .map(|l| Plane {
+                cos: l.cos,
+                sin: l.sin,
+            })
+            .collect();
+        let (mut strips, mut first) = (Vec::new(), vec![0]);
+        for i in 0..lines.len() {
+            join(pattern, lines, i, &mut strips);
+            first.push(strips.len() as u32);
+        }
+        let mut start_of_angle = Vec::with_capacity(ANGLE_STEPS);
+        let mut sector = 0;
+        for step in 0..ANGLE_STEPS {
+            let angle = 4.0 * step as f64 / ANGLE_STEPS as f64;
+            while sector + 1 < planes.len()
+                && pseudo_angle(planes[sector + 1].cos, planes[sector + 1].sin) <= angle
+            {
+                sector += 1;
+            }
+            start_of_angle.push(sector as u16);
+        }
+        let mut scales = Self {
+            period: pattern.period_um,
+            planes,
+            strips,
+            first,
+            start_of_angle,
+            rho_min: 1.0,
+            rho_max: 1.0,
+        };
+        let (mut lowest, mut highest) = (0.0f64, 0.0f64);
+        for sector in 0..lines.len() {
+            for (strip, s) in scales.stack(sector).iter().enumerate() {
+                let begin = scales.begin(sector, strip);
+                for (side, begin) in begin.into_iter().enumerate() {
+                    for z in [begin, s.end[side]] {
+                        // The height is bilinear: its extremes on a strip are at corners, but for
+                        // strips whose ends slope across u, which the margin below takes in.
+                        let height = s.height[side] + s.slope[side] * z;
+                        lowest = lowest.min(height);
+                        highest = highest.max(height);
+                    }
+                }
+            }
+        }
+        let margin = 0.02 * (highest - lowest) + 1e-9;
+        scales.rho_min = 1.0 + lowest - margin;
+        scales.rho_max = 1.0 + highest + margin;
+        scales
+    }
+
+    /// The strips of a sector.
+    #[inline]
+    pub(super) fn stack(&self, sector: usize) -> &[Strip] {
+        &self.strips[self.first[sector] as usize..self.first[sector + 1] as usize]
+    }
+
+    /// Lower ends of a strip on the two half planes.
+    #[inline]
+    pub(super) fn begin(&self, sector: usize, strip: usize) -> [f64; 2] {
+        let stack = self.stack(sector);
+        if strip > 0 {
+            return stack[strip - 1].end;
+        }
+        stack[stack.len() - 1].end.map(|z| z - self.period)
+    }
+
+    /// The cell above.
+    #[inline]
+    pub(super) fn above(&self, mut cell: Cell) -> Cell {
+        if cell.strip + 1 == self.stack(cell.sector).len() {
+            cell.strip = 0;
+            cell.shift += self.period;
+        } else {
+            cell.strip += 1;
+        }
+        cell
+    }
+
+    /// The cell below.
+    #[inline]
+    pub(super) fn below(&self, mut cell: Cell) -> Cell {
+        if cell.strip == 0 {
+            cell.strip = self.stack(cell.sector).len() - 1;
+            cell.shift -= self.period;
+        } else {
+            cell.strip -= 1;
+        }
+        cell
+    }
+
+    /// Index of the half plane that ends a sector.
+    #[inline]
+    pub(super) fn next_sector(&self, sector: usize) -> usize {
+        if sector + 1 == self.planes.len() {
+            0
+        } else {
+            sector + 1
+        }
+    }
+
+    /// The sector before.
+    #[inline]
+    pub(super) fn previous_sector(&self, sector: usize) -> usize {
+        if sector == 0 {
+            self.planes.len() - 1
+        } else {
+            sector - 1
+        }
+    }
+
+    /// The cell that holds a point of the unit-circle frame.
+    pub(super) fn locate(&self, p: DVec3) -> Cell {
+        let angle = pseudo_angle(p.x, p.y) * (ANGLE_STEPS as f64 / 4.0);
+        let mut sector = usize::from(self.start_of_angle[(angle as usize).min(ANGLE_STEPS - 1)]);
+        // The table gives the sector at the start of the step; a few may follow within it.
+        while sector + 1 < self.planes.len() && distance(self.planes[sector + 1], p.x, p.y) >= 0.0 {
+            let next = self.planes[sector + 1];
+            if next.cos * p.x + next.sin * p.y < 0.0 {
+                break;
+            }
+            sector += 1;
+        }
+        let u = self.across(sector, p.x, p.y);
+        let shift = self.period * (p.z / self.period).floor();
+        let guess = Cell {
+            sector,
+            strip: 0,
+            shift,
+        };
+        let n = self.stack(sector).len();
+        let strip = ((p.z - shift) / self.period * n as f64) as usize;
+        self.settle(
+            Cell {
+                strip: strip.min(n - 1),
+                ..guess
+            },
+            u,
+            p.z,
+        )
+    }
+
+    /// Position of a point between the half planes of a sector, 0..1.
+    #[inline]
+    pub(super) fn across(&self, sector: usize, x: f64, y: f64) -> f64 {
+        let a = distance(self.planes[sector], x, y);
+        let b = -distance(self.planes[self.next_sector(sector)], x, y);
+        a / (a + b)
+    }
+
+    /// Walks from a near strip of the right sector to the one that holds `z` at `u`.
+    #[inline]
+    pub(super) fn settle(&self, mut cell: Cell, u: f64, z: f64) -> Cell {
+        let stack = self.stack(cell.sector);
+        let end = |strip: usize| {
+            let e = stack[strip].end;
+            e[0] + u * (e[1] - e[0])
+        };
+        while z - cell.shift > end(cell.strip) {
+            cell = self.above(cell);
+        }
+        loop {
+            let below = self.below(cell);
+            if z - below.shift > end(below.strip) {
+                return cell;
+            }
+            cell = below;
+        }
+    }
+
+    /// `1 + E` of a cell at `u` and the ray's `z`.
+    #[inline]
+    pub(super) fn radius(&self, cell: Cell, u: f64, z: f64) -> f64 {
+        let s = &self.stack(cell.sector)[cell.strip];
+        let z = z - cell.shift;
+        let e0 = s.height[0] + s.slope[0] * z;
+        let e1 = s.height[1] + s.slope[1] * z;
+        1.0 + e0 + u * (e1 - e0)
+    }
+
+    /// Whether a point is inside the surface.
+    pub(super) fn contains(&self, p: DVec3) -> bool {
+        let rho = p.x.hypot(p.y);
+        if rho <= self.rho_min || rho >= self.rho_max {
+            return rho <= self.rho_min;
+        }
+        let cell = self.locate(p);
+        rho < self.radius(cell, self.across(cell.sector, p.x, p.y), p.z)
+    }
+
+    /// Gradient of `rho - 1 - E` in the unit-circle frame: the outward normal of a face.
+    pub(super) fn face_gradient(&self, cell: Cell, p: DVec3) -> DVec3 {
+        let s = &self.stack(cell.sector)[cell.strip];
+        let (u, du) = self.across_gradient(cell.sector, p);
+        let z = p.z - cell.shift;
+        let along_u = s.height[1] - s.height[0] + (s.slope[1] - s.slope[0]) * z;
+        let inverse_rho = 1.0 / p.x.hypot(p.y);
+        DVec3::new(
+            p.x * inverse_rho - along_u * du[0],
+            p.y * inverse_rho - along_u * du[1],
+            -(s.slope[0] + u * (s.slope[1] - s.slope[0])),
+        )
+    }
+
+    /// Gradient of `z - end(u)`: the normal of the riser above a strip, toward the tip.
+    pub(super) fn riser_gradient(&self, cell: Cell, p: DVec3) -> DVec3 {
+        let end = self.stack(cell.sector)[cell.strip].end;
+        let (_, du) = self.across_gradient(cell.sector, p);
+        let along_u = end[1] - end[0];
+        DVec3::new(-along_u * du[0], -along_u * du[1], 1.0)
+    }
+
+    /// `u` and its derivatives by x and y.
+    fn across_gradient(&self, sector: usize, p: DVec3) -> (f64, [f64; 2]) {
+        let (p0, p1) = (self.planes[sector], self.planes[self.next_sector(sector)]);
+        let a = distance(p0, p.x, p.y);
+        let w = a - distance(p1, p.x, p.y);
+        let (wx, wy) = (p1.sin - p0.sin, p0.cos - p1.cos);
+        let inverse = 1.0 / (w * w);
+        let du = [
+            (-p0.sin * w - a * wx) * inverse,
+            (p0.cos * w - a * wy) * inverse,
+        ];
+        (a / w, du)
+    }
+}
+
+/// Signed distance of a point from a half plane's plane, positive toward larger angles.
+#[inline]
+pub(super) fn distance(plane: Plane, x: f64, y: f64) -> f64 {
+    plane.cos * y - plane.sin * x
+}
+
+/// Monotone in the angle of a vector, 0..4, without trigonometry.
+fn pseudo_angle(x: f64, y: f64) -> f64 {
+    let r = y / (x.abs() + y.abs());
+    match (x >= 0.0, y >= 0.0) {
+        (true, true) => r,
+        (false, _) => 2.0 - r,
+        (true, false) => 4.0 + r,
+    }
+}
+
+/// Appends the strips of sector `i`: the union of what shows on its two lines, in rank order. A tile
+/// that shows on one line only narrows to a point on the other.
+fn join(pattern: &Pattern, lines: &[Line], i: usize, strips: &mut Vec<Strip>) {
+    let pair = [i, (i + 1) % lines.len()];
+    let spans = pair.map(|l| &pattern.lines[l]);
+    let mut at = [0, 0];
+    let mut end = spans.map(|s| s.last().map_or(0.0, |s| s.end_um) - pattern.period_um);
+    loop {
+        let rank = |side: usize| spans[side].get(at[side]).map_or(u32::MAX, |s| s.tile);
+        let tile = rank(0).min(rank(1));
+        if tile == u32::MAX {
+            return;
+        }
+        for side in 0..2 {
+            if rank(side) == tile {
+                end[side] = spans[side][at[side]].end_um;
+            }
+        }
+        for side in 0..2 {
+            if spans[side].get(at[side]).is_some_and(|s| s.tile == tile) {
+                at[side] += 1;
+            }
+        }
+        let t = pattern.tiles[tile as usize];
+        strips.push(Strip {
+            end,
+            height: pair.map(|l| t.height_um / lines[l].support_um),
+            slope: pair.map(|l| t.slope / lines[l].support_um),
+        });
+    }
+}
+
+impl Section {
+    /// How many lines describe a surface well: about one a micrometer, which still shows the
+    /// crenation of margins (about 3 um); fewer on fine fibers, bounded to keep the tables in cache.
+    pub(super) fn line_count(&self) -> usize {
+        (self.circumference().round() as usize).clamp(96, 320)
+    }
+}

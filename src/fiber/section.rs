@@ -1,0 +1,156 @@
+//! The elliptical cross-section and the affine frame in which it is the unit circle.
+
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// Semi-axes of the section. Dividing x and y by them makes the section the unit circle: rays stay
+/// straight and keep their parameter, so everything is traced there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Section {
+    /// Semi-axis along x, the major one, micrometers.
+    pub(super) a: f64,
+    /// Semi-axis along y, micrometers.
+    pub(super) b: f64,
+}
+
+/// A ray in the unit-circle frame: x and y in units of the semi-axes, z and t in micrometers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct UnitRay {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) z: f64,
+    pub(super) dx: f64,
+    pub(super) dy: f64,
+    pub(super) dz: f64,
+}
+
+/// A line on the surface along which the scale heights are given: an axial half plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    /// Cosine and sine of the half plane's angle in the unit-circle frame.
+    pub(super) cos: f64,
+    pub(super) sin: f64,
+    /// Position round the fiber by arc length, 0..1.
+    pub(super) turn: f64,
+    /// Distance of the tangent plane from the axis, micrometers: a height over it is the height
+    /// along the normal, so that scales are equally high all round a flat fiber.
+    pub(super) support_um: f64,
+}
+
+impl Section {
+    /// * `diameter_um`: geometric mean of the axes; `aspect`: major over minor axis.
+    pub(super) fn new(diameter_um: f64, aspect: f64) -> Self {
+        let radius = 0.5 * diameter_um;
+        Self {
+            a: radius * aspect.sqrt(),
+            b: radius / aspect.sqrt(),
+        }
+    }
+
+    /// The ray in the unit-circle frame.
+    pub(super) fn unit_ray(&self, origin: DVec3, dir: DVec3) -> UnitRay {
+        let (ia, ib) = (1.0 / self.a, 1.0 / self.b);
+        UnitRay {
+            x: origin.x * ia,
+            y: origin.y * ib,
+            z: origin.z,
+            dx: dir.x * ia,
+            dy: dir.y * ib,
+            dz: dir.z,
+        }
+    }
+
+    /// The unit normal that belongs to a gradient in the unit-circle frame, turned against `dir`.
+    pub(super) fn normal_against(&self, gradient: DVec3, dir: DVec3) -> DVec3 {
+        let n = DVec3::new(gradient.x / self.a, gradient.y / self.b, gradient.z).normalize();
+        if n.dot(dir) > 0.0 { -n } else { n }
+    }
+
+    /// Arc length of the quarter-turn-free parameter, micrometers per radian.
+    fn speed(&self, psi: f64) -> f64 {
+        let (sin, cos) = psi.sin_cos();
+        (self.a * sin).hypot(self.b * cos)
+    }
+
+    /// Circumference, micrometers. The trapezoid rule converges geometrically for a period.
+    pub(super) fn circumference(&self) -> f64 {
+        let n = 4096;
+        let sum: f64 = (0..n)
+            .map(|i| self.speed(TAU * f64::from(i) / f64::from(n)))
+            .sum();
+        sum * TAU / f64::from(n)
+    }
+
+    /// `count` lines equally spaced by arc length.
+    pub(super) fn lines(&self, count: usize) -> Vec<Line> {
+        let fine = 16 * count;
+        let step = TAU / fine as f64;
+        let total = self.circumference();
+        let mut lines = Vec::with_capacity(count);
+        let mut arc = 0.0;
+        for i in 0..fine {
+            // Midpoint rule per step; lines fall where the running arc length passes their share.
+            let ds = self.speed((i as f64 + 0.5) * step) * step;
+            while lines.len() < count && total * lines.len() as f64 / count as f64 <= arc + ds {
+                let target = total * lines.len() as f64 / count as f64;
+                let psi = (i as f64 + ((target - arc) / ds).clamp(0.0, 1.0)) * step;
+                lines.push(self.line(psi, lines.len() as f64 / count as f64));
+            }
+            arc += ds;
+        }
+        lines
+    }
+
+    fn line(&self, psi: f64, turn: f64) -> Line {
+        let (sin, cos) = psi.sin_cos();
+        Line {
+            cos,
+            sin,
+            turn,
+            support_um: self.a * self.b / self.speed(psi),
+        }
+    }
+}
+
+impl UnitRay {
+    /// Coefficients of `rho^2 = c + 2 b t + a t^2`, as `[a, b, c]`.
+    pub(super) fn radius_squared(&self) -> [f64; 3] {
+        [
+            self.dx * self.dx + self.dy * self.dy,
+            self.x * self.dx + self.y * self.dy,
+            self.x * self.x + self.y * self.y,
+        ]
+    }
+
+    /// Where the ray's line is inside the circle of radius `r`: `(enter, leave)`. An axial ray inside
+    /// stays for ever.
+    pub(super) fn inside_circle(&self, r: f64) -> Option<(f64, f64)> {
+        let [a, b, c] = self.radius_squared();
+        let c = c - r * r;
+        if a < 1e-30 {
+            return (c < 0.0).then_some((f64::NEG_INFINITY, f64::INFINITY));
+        }
+        let discriminant = b * b - a * c;
+        if discriminant <= 0.0 {
+            return None;
+        }
+        let root = discriminant.sqrt();
+        // The sum of equal signs loses no digits; the other root follows from their product.
+        Some(if b > 0.0 {
+            let q = -b - root;
+            (q / a, c / q)
+        } else {
+            let q = -b + root;
+            (c / q, q / a)
+        })
+    }
+
+    /// The point at `t`.
+    pub(super) fn at(&self, t: f64) -> DVec3 {
+        DVec3::new(
+            self.x + t * self.dx,
+            self.y + t * self.dy,
+            self.z + t * self.dz,
+        )
+    }
+}

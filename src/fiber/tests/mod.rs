@@ -1,0 +1,118 @@
+//! Structures like those of real animals, and what every fiber must keep to.
+
+mod scales;
+mod shapes;
+mod walk;
+
+use super::Fiber;
+use crate::species::{Cuticle, CuticlePattern, Medulla, MedullaKind, Structure};
+
+pub(super) fn structure(
+    diameter_um: f64,
+    aspect: f64,
+    (pattern, pitch_um, height_um, around): (CuticlePattern, f64, f64, u32),
+    (ratio, kind): (f64, MedullaKind),
+) -> Structure {
+    Structure {
+        diameter_um,
+        aspect,
+        ior: 1.55,
+        cuticle: Cuticle {
+            pattern,
+            pitch_um,
+            height_um,
+            around,
+            jitter: 1.0,
+            roughness: 0.1,
+            riser_roughness: 0.3,
+        },
+        medulla: Medulla {
+            ratio,
+            kind,
+            void_ior: 1.0003,
+            pigment: 1.0,
+        },
+    }
+}
+
+pub(super) fn glass() -> Structure {
+    let cuticle = (CuticlePattern::Smooth, 10.0, 0.0, 1);
+    structure(80.0, 1.0, cuticle, (0.0, MedullaKind::None))
+}
+
+pub(super) fn fox_guard() -> Structure {
+    let ladder = MedullaKind::Ladder {
+        pitch_um: 9.0,
+        septum_um: 2.0,
+    };
+    structure(
+        75.0,
+        1.2,
+        (CuticlePattern::Mosaic, 9.0, 0.5, 7),
+        (0.7, ladder),
+    )
+}
+
+pub(super) fn bear_guard() -> Structure {
+    let froth = MedullaKind::Froth {
+        radius_um: 5.0,
+        radius_sigma: 0.35,
+        air_fraction: 0.4,
+    };
+    structure(
+        130.0,
+        1.1,
+        (CuticlePattern::IrregularWave, 11.0, 0.6, 5),
+        (0.37, froth),
+    )
+}
+
+pub(super) fn mink_under() -> Structure {
+    let ladder = MedullaKind::Ladder {
+        pitch_um: 9.0,
+        septum_um: 2.0,
+    };
+    let mut s = structure(
+        14.0,
+        1.0,
+        (CuticlePattern::DiamondPetal, 12.0, 0.5, 3),
+        (0.5, ladder),
+    );
+    s.medulla.pigment = 2.0;
+    s
+}
+
+pub(super) fn chinchilla() -> Structure {
+    let medium = MedullaKind::Medium {
+        scattering_per_um: 0.1,
+        asymmetry: 0.5,
+    };
+    structure(
+        15.0,
+        1.0,
+        (CuticlePattern::Coronal, 25.0, 0.7, 1),
+        (0.75, medium),
+    )
+}
+
+pub(super) fn flat_seal() -> Structure {
+    structure(
+        40.0,
+        3.5,
+        (CuticlePattern::IrregularWave, 8.0, 0.4, 10),
+        (0.0, MedullaKind::None),
+    )
+}
+
+pub(super) fn all() -> Vec<(&'static str, Fiber)> {
+    [
+        ("glass", glass()),
+        ("fox guard", fox_guard()),
+        ("bear guard", bear_guard()),
+        ("mink under", mink_under()),
+        ("chinchilla", chinchilla()),
+        ("flat seal", flat_seal()),
+    ]
+    .map(|(name, s)| (name, Fiber::build(&s, 7).unwrap()))
+    .into()
+}

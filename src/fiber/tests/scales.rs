@@ -1,0 +1,130 @@
+//! The scaled surface: closed, tilted by the right angle, as thick as asked.
+
+use super::super::pattern::Pattern;
+use super::super::section::Section;
+use super::super::surface::Surface;
+use super::super::{Fiber, Region};
+use crate::math::frame::direction;
+use crate::sampling::Rng;
+use crate::species::CuticlePattern;
+use glam::DVec3;
+
+const PATTERNS: [CuticlePattern; 4] = [
+    CuticlePattern::Coronal,
+    CuticlePattern::IrregularWave,
+    CuticlePattern::Mosaic,
+    CuticlePattern::DiamondPetal,
+];
+
+#[test]
+fn height_closes_round_the_fiber_and_along_the_period() {
+    for pattern in PATTERNS {
+        let mut s = super::fox_guard();
+        s.cuticle.pattern = pattern;
+        let fiber = Fiber::build(&s, 1).unwrap();
+        let Surface::Scales(scales) = &fiber.surface else {
+            panic!("no scales")
+        };
+        let radius = |p: DVec3| {
+            let cell = scales.locate(p);
+            scales.radius(cell, scales.across(cell.sector, p.x, p.y), p.z)
+        };
+        let mut torn = 0;
+        for i in 0..4000 {
+            let mut rng = Rng::new(3, i);
+            let z = 300.0 * (rng.uniform() - 0.5);
+            let sector = (rng.bits() as usize) % scales.planes.len();
+            let plane = scales.planes[sector];
+            let on = |e: f64| DVec3::new(plane.cos - e * plane.sin, plane.sin + e * plane.cos, z);
+            // A margin exactly here steps; anything else must agree from both sides.
+            torn += u32::from((radius(on(1e-9)) - radius(on(-1e-9))).abs() > 1e-7);
+            let p = direction(0.0, 6.3 * rng.uniform()) + DVec3::Z * z;
+            let q = p + DVec3::Z * 3.0 * fiber.period_um();
+            torn += u32::from((radius(p) - radius(q)).abs() > 1e-9);
+        }
+        assert!(torn <= 2, "{pattern:?}: {torn}");
+    }
+}
+
+/// Faces rise toward the tip: seen from outside their normals lean to the root by the tilt.
+#[test]
+fn faces_lean_to_the_root_by_the_tilt() {
+    for pattern in PATTERNS {
+        for (height, pitch) in [(0.5, 9.0), (0.5, 14.0)] {
+            let mut s = super::fox_guard();
+            s.cuticle.pattern = pattern;
+            s.cuticle.height_um = height;
+            s.cuticle.pitch_um = pitch;
+            let fiber = Fiber::build(&s, 1).unwrap();
+            let (mut tilt, mut faces) = (0.0, 0u32);
+            for i in 0..20_000 {
+                let mut rng = Rng::new(4, i);
+                let phi = std::f64::consts::TAU * rng.uniform();
+                let from =
+                    direction(0.0, phi) * 90.0 + DVec3::Z * fiber.period_um() * rng.uniform();
+                let hit = fiber.next_hit(from, -direction(0.0, phi), Region::Outside, None);
+                let hit = hit.unwrap();
+                if hit.roughness == s.cuticle.roughness {
+                    tilt -= hit.normal.z.asin().to_degrees();
+                    faces += 1;
+                }
+            }
+            let mean = tilt / f64::from(faces);
+            let expected = (height / pitch).atan().to_degrees();
+            assert!(
+                (mean - expected).abs() < 0.3,
+                "{pattern:?}: {mean} {expected}"
+            );
+            assert!(faces > 19_000, "{pattern:?}: {faces}");
+        }
+    }
+}
+
+#[test]
+fn mean_radius_stays_the_structures() {
+    for pattern in PATTERNS {
+        let mut s = super::fox_guard();
+        s.cuticle.pattern = pattern;
+        let section = Section::new(s.diameter_um, s.aspect);
+        let lines = section.lines(section.line_count());
+        let pattern = Pattern::new(&s.cuticle, &lines, 3).unwrap();
+        let (mut sum, mut length) = (0.0, 0.0);
+        pattern.for_each_span(|tile, lo, hi| {
+            assert!(hi >= lo);
+            sum += (tile.height_um + tile.slope * 0.5 * (lo + hi)) * (hi - lo);
+            length += hi - lo;
+        });
+        assert!((length / lines.len() as f64 / pattern.period_um - 1.0).abs() < 1e-12);
+        assert!((sum / length).abs() < 1e-12);
+    }
+}
+
+/// A ray that skims the crests enters and leaves a scale: pairs of hits that end signs alone would miss.
+#[test]
+fn grazing_rays_find_both_crossings() {
+    let fiber = Fiber::build(&super::fox_guard(), 2).unwrap();
+    let Surface::Scales(scales) = &fiber.surface else {
+        panic!("no scales")
+    };
+    let (mut hits, mut dense) = (0u32, 0u32);
+    for i in 0..4000 {
+        let mut rng = Rng::new(8, i);
+        let rho = scales.rho_min + (scales.rho_max - scales.rho_min) * rng.uniform();
+        let phi = std::f64::consts::TAU * rng.uniform();
+        let dir = direction(0.0, phi + std::f64::consts::FRAC_PI_2);
+        let dir = (dir * DVec3::new(fiber.section.a, fiber.section.b, 1.0)).normalize();
+        let at = direction(0.0, phi) * rho * DVec3::new(fiber.section.a, fiber.section.b, 1.0);
+        let origin = at - 200.0 * dir + DVec3::Z * 500.0 * rng.uniform();
+        let hit = fiber.next_hit(origin, dir, Region::Outside, None);
+        // The truth by brute force: steps of a hundredth of a micrometer through the shell.
+        let inside = (0..4000).any(|k| {
+            let t = 200.0 + 0.01 * (f64::from(k) - 2000.0);
+            fiber.region_at(origin + t * dir) != Region::Outside
+        });
+        hits += u32::from(hit.is_some());
+        dense += u32::from(inside);
+        assert!(hit.is_some() || !inside, "ray {i} passes through a scale");
+    }
+    assert!(hits >= dense && hits < dense + 20, "{hits} {dense}");
+    assert!(hits > 1000 && hits < 3900);
+}
