@@ -9,6 +9,7 @@ mod cache;
 mod console;
 mod failure;
 mod render;
+mod schema;
 mod signals;
 mod species;
 mod species_report;
@@ -44,6 +45,10 @@ enum Command {
     Table(table::Args),
     /// Show or clear the cache of baked tables.
     Cache(cache::Args),
+    /// Prints the JSON Schema of a file format.
+    Schema(schema::Args),
+    /// Shows the built-in animals and checks species files.
+    Species(species::Args),
 }
 
 /// Parses the command line, runs the command and returns the exit code.
@@ -70,6 +75,8 @@ pub fn run() -> ExitCode {
 fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
     match command {
         Command::Render(args) => render::run(&args, console),
+        Command::Table(args) => table::run(&args, console),
+        Command::Schema(args) => schema::run(&args, console),
         Command::Species(args) => species::run(&args, console),
         Command::Table(args) => table::run(&args, console),
         Command::Bake(args) => bake::run(&args, console),

@@ -59,12 +59,19 @@ impl Refused {
 
 impl Located {
     fn new(errors: &SpeciesErrors, problem: &Problem, source: &Arc<NamedSource<String>>) -> Self {
-        let label = match &problem.place {
-            Place::File(span) => Some(LabeledSpan::underline(span.clone())),
-            Place::Set(_) => None,
+        // The line shown carries the place; an override has no line.
+        let (label, message) = match &problem.place {
+            Place::File(span) => (
+                Some(LabeledSpan::underline(span.clone())),
+                problem.message.clone(),
+            ),
+            Place::Set(_) => (
+                None,
+                format!("{}: {}", errors.locate(&problem.place), problem.message),
+            ),
         };
         Self {
-            message: format!("{}: {}", errors.locate(&problem.place), problem.message),
+            message,
             hint: problem.hint.clone(),
             label,
             source: Arc::clone(source),

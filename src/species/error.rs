@@ -9,7 +9,7 @@ use std::ops::Range;
 #[derive(Debug, thiserror::Error)]
 pub enum SpeciesError {
     /// Neither a built-in species nor the path of a TOML file.
-    #[error("there is no built-in species \"{}\"", name.escape_debug())]
+    #[error("there is no built-in species \"{}\"", printable(name))]
     UnknownName {
         /// What was asked for.
         name: String,
@@ -105,11 +105,11 @@ impl SpeciesErrors {
         match place {
             Place::File(span) => {
                 let (line, column) = self.line_column(span.start);
-                format!("{}:{line}:{column}", self.file)
+                format!("{}:{line}:{column}", printable(&self.file))
             }
             Place::Set(index) => {
                 let text = self.overrides.get(*index).map_or("", |s| s.as_str());
-                format!("--set {}", text.escape_debug())
+                format!("--set {}", printable(text))
             }
         }
     }
@@ -151,8 +151,8 @@ impl Problems {
         if self.kept.len() < KEPT {
             self.kept.push(Problem {
                 place: place.clone(),
-                message,
-                hint,
+                message: printable(&message),
+                hint: hint.map(|hint| printable(&hint)),
             });
         }
     }
@@ -190,6 +190,15 @@ impl Problems {
             count: self.count,
         })
     }
+}
+
+/// `text` with control characters escaped: what comes from a file must not act on the terminal.
+pub(crate) fn printable(text: &str) -> String {
+    let escape = |c: char| match c {
+        c if c.is_control() => c.escape_debug().to_string(),
+        c => c.to_string(),
+    };
+    text.chars().map(escape).collect()
 }
 
 /// The candidate that `word` was most likely meant to be: at most one edit for short words, one in

@@ -69,7 +69,7 @@ static SKIN: Shape = Shape {
     cited: true,
     fields: &[Field::required(
         "color",
-        Kind::Numbers(3, number(0.0, 1.0, "linear reflectance")),
+        Kind::Numbers(3, number(0.0, 1.0, "")),
         "Linear Rec.709 reflectance, red green blue.",
     )],
 };

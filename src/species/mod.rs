@@ -118,15 +118,4 @@ fn unknown_name(name: &str) -> SpeciesError {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_built_in_species_loads() {
-        for id in ids() {
-            if let Err(error) = load(id, &[]) {
-                panic!("{id}:\n{error}");
-            }
-        }
-    }
-}
+mod tests;

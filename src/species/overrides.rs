@@ -2,7 +2,7 @@
 //! same rules as the file.
 
 use super::check::{class_names, join};
-use super::error::{Place, Problems, closest, suggestion};
+use super::error::{Place, Problems, closest, printable, suggestion};
 use super::fields;
 use super::shape::{CITATION, Kind, Shape};
 use super::tree::{Data, Node, Table, parse_override};
@@ -18,7 +18,7 @@ pub(crate) fn apply(root: &mut Table, overrides: &[String], problems: &mut Probl
 
 /// The overrides as comments, to stand at the end of the file's text.
 pub(crate) fn as_comments(overrides: &[String]) -> String {
-    let line = |text: &String| format!("# --set {}\n", text.escape_debug());
+    let line = |text: &String| format!("# --set {}\n", printable(text));
     if overrides.is_empty() {
         String::new()
     } else {
@@ -97,7 +97,7 @@ impl Target<'_> {
         let mut known: Vec<&str> = self.shape.keys().collect();
         known.extend(self.classes.iter().map(String::as_str));
         let hint = suggestion(closest(key, known.iter().copied()), &known);
-        refuse(format!("unknown key `{}`", path.escape_debug()), hint)
+        refuse(format!("unknown key `{path}`"), hint)
     }
 }
 
@@ -217,7 +217,7 @@ fn item_at<'a>(items: &'a mut [Node], index: &str, path: &str) -> Result<&'a mut
     match place.and_then(|i| items.get_mut(i)) {
         Some(item) => Ok(item),
         None => refuse(
-            format!("`{path}` has no item `{}`", index.escape_debug()),
+            format!("`{path}` has no item `{index}`"),
             format!("its items are counted from 0 to {last}: {path}.0"),
         ),
     }

@@ -86,6 +86,7 @@ impl Node {
     pub(crate) fn describe(&self) -> String {
         match &self.data {
             Data::Text(text) => format!("the text {}", quote(text)),
+            Data::Number(value, _) if value.abs() >= 1e15 => format!("{value:e}"),
             Data::Number(value, _) => format!("{value}"),
             Data::Other(name) => (*name).to_owned(),
             Data::Array(items) => format!("an array of {}", items.len()),
@@ -94,11 +95,11 @@ impl Node {
     }
 }
 
-/// `text` in quotes, without control characters, at most 60 characters.
+/// `text` in quotes, at most 60 characters.
 pub(crate) fn quote(text: &str) -> String {
     let cut: String = text.chars().take(60).collect();
     let dots = if cut.len() < text.len() { "..." } else { "" };
-    format!("\"{}{dots}\"", cut.escape_debug())
+    format!("\"{cut}{dots}\"")
 }
 
 /// Reads a document. The parser itself limits nesting to 80 levels.

@@ -1,0 +1,34 @@
+//! `vair schema`: the JSON Schema of a file format, for editors.
+
+use super::{Console, Failure};
+use crate::blame::Blame;
+use crate::species;
+use std::io::Write as _;
+
+/// Prints the JSON Schema of a file format.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  vair schema species > species.schema.json")]
+pub(super) struct Args {
+    /// Which files.
+    #[arg(value_enum, default_value_t = Format::Species)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Format {
+    /// Species files.
+    Species,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Stdout that cannot be written.
+pub(super) fn run(args: &Args, _console: &Console) -> Result<(), Failure> {
+    let schema = match args.format {
+        Format::Species => species::json_schema(),
+    };
+    writeln!(std::io::stdout().lock(), "{schema:#}")
+        .map_err(|e| Failure::new(Blame::Environment, format!("cannot write to stdout: {e}")))
+}
