@@ -45,10 +45,8 @@ enum Command {
     Table(table::Args),
     /// Show or clear the cache of baked tables.
     Cache(cache::Args),
-    /// Prints the JSON Schema of a file format.
+    /// Print the JSON Schema of a file format.
     Schema(schema::Args),
-    /// Shows the built-in animals and checks species files.
-    Species(species::Args),
 }
 
 /// Parses the command line, runs the command and returns the exit code.
@@ -75,7 +73,6 @@ pub fn run() -> ExitCode {
 fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
     match command {
         Command::Render(args) => render::run(&args, console),
-        Command::Table(args) => table::run(&args, console),
         Command::Schema(args) => schema::run(&args, console),
         Command::Species(args) => species::run(&args, console),
         Command::Table(args) => table::run(&args, console),
