@@ -86,7 +86,7 @@ fn the_command_accepts_good_files_and_names_bad_ones() {
 }
 
 fn vair(arguments: &[&str]) -> std::process::Output {
-    assert_cmd::Command::new(env!("CARGO_BIN_EXE_vair"))
+    std::process::Command::new(env!("CARGO_BIN_EXE_vair"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .args(arguments)
         .output()
