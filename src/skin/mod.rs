@@ -3,6 +3,9 @@
 mod body;
 mod builtin;
 mod error;
+mod obj;
+mod ply;
+mod raw;
 mod sculpt;
 mod surface_nets;
 #[cfg(test)]
@@ -10,7 +13,9 @@ mod tests;
 
 pub use error::SkinError;
 
+use crate::io::read_bounded;
 use glam::{Vec2, Vec3};
+use std::path::Path;
 
 /// Names that [`load`] knows without a file.
 pub const BUILT_IN: [&str; 4] = ["body", "ball", "swatch", "tress"];
@@ -58,13 +63,37 @@ pub fn load(name_or_path: &str) -> Result<Skin, SkinError> {
         "ball" => Ok(builtin::ball()),
         "swatch" => Ok(builtin::swatch()),
         "tress" => Ok(builtin::tress()),
-        _ => Err(SkinError::UnknownName {
-            name: name_or_path.to_owned(),
-        }),
+        _ => load_file(name_or_path),
     }
 }
 
+/// Longest mesh file, bytes.
+const MAX_FILE: u64 = 2 << 30;
+
+fn load_file(name: &str) -> Result<Skin, SkinError> {
+    let path = Path::new(name);
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+    let read: fn(&str, &[u8]) -> Result<Skin, SkinError> = match extension {
+        "obj" | "OBJ" => obj::read,
+        "ply" | "PLY" => ply::read,
+        _ => {
+            return Err(SkinError::UnknownName {
+                name: name.to_owned(),
+            });
+        }
+    };
+    read(name, &read_bounded(path, MAX_FILE)?)
+}
+
 impl Skin {
+    /// Scales the mesh about the origin, for files in other units than meters.
+    pub fn scale(&mut self, factor: f32) {
+        for p in &mut self.positions {
+            *p *= factor;
+        }
+        self.floor = self.floor.map(|height| height * factor);
+    }
+
     /// The corners of triangle `index`.
     pub fn corners(&self, index: usize) -> [Vec3; 3] {
         self.triangles[index].map(|v| self.positions[v as usize])

@@ -3,6 +3,8 @@
 use super::*;
 use std::collections::HashMap;
 
+mod files;
+
 /// The signed volume that the triangles enclose.
 fn volume(skin: &Skin, triangles: std::ops::Range<usize>) -> f64 {
     triangles
