@@ -18,8 +18,8 @@ use vair::table::{PHOTON, Provenance, StructureTable};
 
 const ETA: f64 = 1.55;
 const MAX_EVENTS: u32 = 16;
-/// Points of the expected maps, four for each photon of a bin.
-const RAYS: u32 = 500_000;
+/// Points of the expected maps, two for each photon of a bin.
+const RAYS: u32 = 250_000;
 /// Level of optical depth 0.2 and the last level, at which only R is left.
 const DYED: usize = 5;
 const LAST: usize = 11;
