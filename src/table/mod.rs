@@ -9,6 +9,7 @@ mod error;
 mod exr;
 mod maps;
 mod nodes;
+mod plot;
 mod scatter;
 mod structure;
 
@@ -16,5 +17,6 @@ pub use self::exr::{FORMAT, TableFile};
 pub use error::TableError;
 pub use maps::ScatterMaps;
 pub use nodes::{Mode, Nodes};
+pub use plot::Plot;
 pub use scatter::{Lobe, ScatterTable};
 pub use structure::{Ledger, PHOTON, Provenance, StructureTable};

@@ -19,6 +19,13 @@ pub struct Ledger {
     pub lost: u64,
 }
 
+impl Ledger {
+    /// Photons that hit the fiber.
+    pub fn photons(&self) -> f64 {
+        self.emitted as f64 / PHOTON as f64
+    }
+}
+
 /// One photon in the fixed-point unit of [`Ledger`].
 pub const PHOTON: u64 = 1 << 32;
 

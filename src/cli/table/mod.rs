@@ -2,6 +2,7 @@
 
 mod dye;
 mod info;
+mod plot;
 
 use super::{Console, Failure};
 
@@ -20,6 +21,8 @@ enum Command {
     Info(info::Args),
     /// Give a structure table a pigment: absorption levels become linear RGB.
     Dye(dye::Args),
+    /// Draw the scattering for one incidence: sphere map, lobe, albedo.
+    Plot(plot::Args),
 }
 
 /// Runs `vair table`.
@@ -27,5 +30,6 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     match &args.command {
         Command::Info(args) => info::run(args),
         Command::Dye(args) => dye::run(args, console),
+        Command::Plot(args) => plot::run(args, console),
     }
 }

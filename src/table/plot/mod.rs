@@ -1,0 +1,171 @@
+//! Pictures of a scattering function: the sphere of directions as a map, the lobe in space and the
+//! albedo over inclination, for one inclination of the query direction.
+
+mod albedo;
+mod colormap;
+mod frame3d;
+mod lobe;
+mod sphere_map;
+mod text;
+
+use super::{ScatterMaps, ScatterTable, TableError};
+use crate::image::{Canvas, GLYPH_HEIGHT};
+use crate::math::frame;
+use glam::{DVec3, Vec2, Vec3};
+use rayon::prelude::*;
+use text::Pen;
+
+/// Everything is drawn this many times larger in each direction and averaged down.
+const SUPERSAMPLE: usize = 2;
+
+/// Smallest picture in which the parts and labels still fit, and largest, pixels.
+const WIDTHS: std::ops::RangeInclusive<usize> = 640..=8192;
+const HEIGHTS: std::ops::RangeInclusive<usize> = 400..=8192;
+
+const PAPER: Vec3 = Vec3::new(0.985, 0.98, 0.97);
+const INK: Vec3 = Vec3::new(0.13, 0.14, 0.17);
+const FAINT: Vec3 = Vec3::new(0.62, 0.63, 0.66);
+
+/// What to draw.
+#[derive(Clone, Debug)]
+pub struct Plot<'a> {
+    /// The table, dyed.
+    pub maps: &'a ScatterMaps,
+    /// Whether its three channels are one and the same absorption level.
+    pub gray: bool,
+    /// Inclination of the query direction, degrees in -90..=90, positive toward the tip.
+    pub incidence_deg: f64,
+    /// First line of the picture.
+    pub title: String,
+    /// Second line.
+    pub subtitle: String,
+    /// Width and height in pixels, at least 640 x 400.
+    pub size: (usize, usize),
+}
+
+impl Plot<'_> {
+    /// The picture.
+    ///
+    /// * Errors: inclination or size out of range, a table whose face edge is no power of two.
+    pub fn draw(&self) -> Result<Canvas, TableError> {
+        let (width, height) = self.size;
+        let request = |what: String| Err(TableError::Request(what));
+        if !WIDTHS.contains(&width) || !HEIGHTS.contains(&height) {
+            return request(format!(
+                "a plot of {width}x{height} pixels; {}x{} to {}x{} are possible",
+                WIDTHS.start(),
+                HEIGHTS.start(),
+                WIDTHS.end(),
+                HEIGHTS.end()
+            ));
+        }
+        if !(-90.0..=90.0).contains(&self.incidence_deg) {
+            return request(format!(
+                "an incidence of {} degrees; -90 to 90 are possible",
+                self.incidence_deg
+            ));
+        }
+        if !self.maps.res.is_power_of_two() {
+            return request(format!(
+                "a table of {} texels a face edge; only powers of two can be looked up",
+                self.maps.res
+            ));
+        }
+        let maps = self.maps;
+        let table = ScatterTable::new(maps.nodes.clone(), maps.res, maps.rgb.clone());
+        let field = Field::new(&table, self.incidence_deg.to_radians());
+
+        let (w, h) = (width * SUPERSAMPLE, height * SUPERSAMPLE);
+        let mut canvas = Canvas::new(w, h, PAPER);
+        // Letters grow with the picture: 1/75 of its height, in whole steps of the bitmap font.
+        let step = (h as f32 / (75.0 * GLYPH_HEIGHT)).min(w as f32 / (120.0 * GLYPH_HEIGHT));
+        let pen = Pen::new(step.max(1.0));
+        let margin = 2.0 * pen.line();
+        let size = Vec2::new(w as f32, h as f32);
+
+        pen.left(
+            &mut canvas,
+            Vec2::new(margin, 0.7 * margin),
+            &self.title,
+            INK,
+        );
+        let below = Vec2::new(margin, 0.7 * margin + 1.3 * pen.line());
+        pen.left(&mut canvas, below, &self.subtitle, FAINT);
+
+        let top = 0.7 * margin + 4.0 * pen.line();
+        let split = (0.56 * size.x).round();
+        let floor = top + 0.66 * (size.y - top);
+        let map_area = Area {
+            min: Vec2::new(margin, top),
+            max: Vec2::new(split - margin, floor),
+        };
+        sphere_map::draw(&mut canvas, &pen, map_area, &field);
+        let albedo_area = Area {
+            min: Vec2::new(margin, floor + 1.5 * pen.line()),
+            max: Vec2::new(split - margin, size.y - 0.5 * margin),
+        };
+        albedo::draw(&mut canvas, &pen, albedo_area, maps, self);
+        let lobe_area = Area {
+            min: Vec2::new(split, top),
+            max: size - 0.5 * margin,
+        };
+        lobe::draw(&mut canvas, &pen, lobe_area, &field, self.gray);
+        Ok(canvas.downsampled(SUPERSAMPLE))
+    }
+}
+
+/// A rectangle of the picture, pixels.
+#[derive(Clone, Copy, Debug)]
+struct Area {
+    min: Vec2,
+    max: Vec2,
+}
+
+impl Area {
+    fn size(&self) -> Vec2 {
+        self.max - self.min
+    }
+}
+
+/// The scattering function for one query direction.
+struct Field<'a> {
+    table: &'a ScatterTable,
+    theta: f64,
+    query: Vec3,
+    /// Largest density of the sphere but for a thousandth of the texels.
+    peak: f32,
+}
+
+impl<'a> Field<'a> {
+    fn new(table: &'a ScatterTable, theta: f64) -> Self {
+        let mut field = Self {
+            table,
+            theta,
+            query: frame::direction(theta, 0.0).as_vec3(),
+            peak: 0.0,
+        };
+        // One direction a texel. The brightest few are noise or the poles, where a shifted map is
+        // singular; they saturate rather than set the scale.
+        let cube = crate::math::unicube::Unicube::new(table.res());
+        let mut values: Vec<f32> = (0..cube.texels())
+            .into_par_iter()
+            .map(|t| field.gray(cube.direction(t, 0.5, 0.5).0))
+            .collect();
+        values.sort_by(f32::total_cmp);
+        let at = values.len() - 1 - values.len() / 1000;
+        field.peak = values[at].max(1e-12);
+        field
+    }
+
+    /// `S cos(theta)` per steradian, linear RGB.
+    fn rgb(&self, w: DVec3) -> Vec3 {
+        self.table.lobe(self.query).density(w.as_vec3())
+    }
+
+    fn gray(&self, w: DVec3) -> f32 {
+        self.rgb(w).element_sum() / 3.0
+    }
+}
+
+#[cfg(test)]
+mod tests;
