@@ -66,7 +66,7 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         incidence_deg: args.incidence,
         title: format!("{}, incidence {}°", name(&maps.provenance), args.incidence),
         subtitle: format!(
-            "{}; {mode} mode, {} x 6 x {res} x {res}, {photons:.3e} photons",
+            "{}; {mode} mode, {} x 6 x {res} x {res}, {photons:e} photons",
             subject.color,
             maps.nodes.len(),
             res = maps.res

@@ -63,7 +63,7 @@ impl View {
                     continue;
                 }
                 let color = wa * corners[0].1 + wb * corners[1].1 + wc * corners[2].1;
-                self.plot(canvas, x, y, wa * za + wb * zb + wc * zc, color, 1.0);
+                self.plot(canvas, x, y, wa * za + wb * zb + wc * zc, color);
             }
         }
     }
@@ -76,7 +76,7 @@ impl View {
             for x in (center.x - r).floor() as i64..=(center.x + r).ceil() as i64 {
                 let distance = center.distance(Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
                 if distance < r {
-                    self.plot(canvas, x, y, z, color, 1.0);
+                    self.plot(canvas, x, y, z, color);
                 }
             }
         }
@@ -96,7 +96,7 @@ impl View {
         }
     }
 
-    fn plot(&mut self, canvas: &mut Canvas, x: i64, y: i64, z: f32, color: Vec3, cover: f32) {
+    fn plot(&mut self, canvas: &mut Canvas, x: i64, y: i64, z: f32, color: Vec3) {
         let (column, row) = (x - self.area.min.x as i64, y - self.area.min.y as i64);
         if column < 0 || row < 0 || column as usize >= self.width {
             return;
@@ -109,7 +109,7 @@ impl View {
         };
         if z >= *depth {
             *depth = z;
-            canvas.blend(x, y, color, cover);
+            canvas.blend(x, y, color, 1.0);
         }
     }
 }

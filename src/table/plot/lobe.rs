@@ -14,27 +14,31 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// 64, so that edges are the table's.
 const STEPS: usize = 360;
 
-/// Directions averaged for one corner of the mesh, along each axis: smooths the steps of texels.
-const TAPS: i32 = 3;
+/// Directions averaged for one corner of the mesh, along each axis.
+const TAPS: i32 = 5;
 
-/// Half the width of that average, radians: about a texel of a table of 64.
-const BLUR: f64 = 0.012;
+/// Half the extent of the world that the view shows: the unit ball, arrows and labels.
+const REACH: f32 = 1.25;
 
-/// Part of the unit ball that the view shows: room for arrows and labels.
-const REACH: f32 = 1.32;
-
-const FIBER: Vec3 = Vec3::new(0.47, 0.40, 0.34);
-const ARROW: Vec3 = Vec3::new(0.10, 0.45, 0.75);
+const FIBER: Vec3 = Vec3::new(0.78, 0.67, 0.56);
+const ARROW: Vec3 = Vec3::new(0.25, 0.62, 0.98);
 
 pub(super) fn draw(canvas: &mut Canvas, pen: &Pen, area: Area, field: &Field, gray: bool) {
     // Seen across the plane of incidence, a little from above and from the light's side.
     let mut view = View::new(area, Vec3::new(0.45, -1.0, 0.42), REACH);
     let title = area.min + glam::Vec2::new(2.0 * pen.line(), -0.4 * pen.line());
-    pen.left(canvas, title, "lobe: distance = √(S cos θ)", INK);
+    let caption = "lobe: distance is the root of S cos θ";
+    pen.left(canvas, title, caption, INK);
     axes(canvas, pen, &mut view);
-    fiber(canvas, &mut view);
-    arrow(canvas, pen, &mut view, field.query);
+    let z = Vec3::Z;
+    cone(canvas, &mut view, [-1.1 * z, 1.1 * z], [0.022; 2], FIBER);
+    cone(canvas, &mut view, [1.1 * z, 1.22 * z], [0.045, 0.0], FIBER);
+    // The query comes from outside the unit ball, so that no lobe hides it.
+    let q = field.query;
+    cone(canvas, &mut view, [1.3 * q, 1.1 * q], [0.012; 2], ARROW);
+    cone(canvas, &mut view, [1.12 * q, 1.02 * q], [0.034, 0.0], ARROW);
     surface(canvas, &mut view, field, gray);
+    labels(canvas, pen, &view);
 }
 
 /// One corner of the mesh.
@@ -84,12 +88,13 @@ fn surface(canvas: &mut Canvas, view: &mut View, field: &Field, gray: bool) {
     }
 }
 
+/// Mean density about a direction: smooths the steps of texels and the noise of short bakes.
 fn corner(field: &Field, theta: f64, phi: f64) -> Corner {
     let w = frame::direction(theta, phi);
     let east = frame::direction(0.0, phi + FRAC_PI_2);
     let north = w.cross(east);
     let mut rgb = Vec3::ZERO;
-    let tap = |i: i32| BLUR * f64::from(2 * i - (TAPS - 1)) / f64::from(TAPS - 1);
+    let tap = |i: i32| field.blur * f64::from(2 * i - (TAPS - 1)) / f64::from(TAPS - 1);
     for (i, j) in (0..TAPS).flat_map(|i| (0..TAPS).map(move |j| (i, j))) {
         rgb += field.rgb((w + tap(i) * east + tap(j) * north).normalize());
     }
@@ -115,60 +120,52 @@ fn shade(normal: Vec3) -> f32 {
 
 /// The unit circle in the normal plane with marks every 30 degrees.
 fn axes(canvas: &mut Canvas, pen: &Pen, view: &mut View) {
-    let on = |phi: f64, r: f64| frame::direction(0.0, phi).as_vec3() * r as f32;
     for i in 0..180 {
         let phi = |i: i32| TAU * f64::from(i) / 180.0;
-        view.line(
-            canvas,
-            on(phi(i), 1.0),
-            on(phi(i + 1), 1.0),
-            pen.hair(),
-            FAINT,
-        );
+        let (a, b) = (in_plane(phi(i), 1.0), in_plane(phi(i + 1), 1.0));
+        view.line(canvas, a, b, pen.hair(), FAINT);
     }
     for k in 0..12 {
         let phi = TAU * f64::from(k) / 12.0;
-        view.line(canvas, on(phi, 0.97), on(phi, 1.03), pen.hair(), FAINT);
-        if k % 3 == 0 {
-            let label = ["φ 0°", "90°", "180°", "-90°"][k as usize / 3];
-            let at = view.project(on(phi, 1.17)).0;
-            pen.center(
-                canvas,
-                at - glam::Vec2::new(0.0, 0.5 * pen.line()),
-                label,
-                FAINT,
-            );
-        }
+        let (a, b) = (in_plane(phi, 0.97), in_plane(phi, 1.03));
+        view.line(canvas, a, b, pen.hair(), FAINT);
     }
 }
 
-/// The fiber along z, thin, with an arrow head toward the tip.
-fn fiber(canvas: &mut Canvas, view: &mut View) {
-    let width = 0.022
-        * view
-            .project(Vec3::X)
-            .0
-            .distance(view.project(-Vec3::X).0)
-            .max(200.0);
-    view.line(canvas, Vec3::Z * -1.15, Vec3::Z * 1.15, width, FIBER);
-    for i in 0..=20 {
-        let f = i as f32 / 20.0;
-        view.dot(canvas, Vec3::Z * (1.15 + 0.1 * f), width * (1.0 - f), FIBER);
+/// Azimuths at the circle, over everything else so that they can be read.
+fn labels(canvas: &mut Canvas, pen: &Pen, view: &View) {
+    for (k, label) in ["φ 0°", "90°", "180°", "-90°"].into_iter().enumerate() {
+        let (at, _) = view.project(in_plane(FRAC_PI_2 * k as f64, 1.14));
+        let above = at - glam::Vec2::new(0.0, 0.5 * pen.line());
+        pen.center(canvas, above, label, INK);
     }
 }
 
-/// The query direction as an arrow that ends near the fiber.
-fn arrow(canvas: &mut Canvas, pen: &Pen, view: &mut View, query: Vec3) {
-    let width = 3.0 * pen.hair();
-    let tail = 1.22 * query;
-    view.line(canvas, tail, 0.12 * query, width, ARROW);
-    for i in 0..=12 {
-        let f = i as f32 / 12.0;
-        view.dot(
-            canvas,
-            query * (0.05 + 0.1 * f),
-            width * (0.3 + 1.6 * f),
-            ARROW,
-        );
+/// A point of the normal plane.
+fn in_plane(phi: f64, radius: f64) -> Vec3 {
+    (frame::direction(0.0, phi) * radius).as_vec3()
+}
+
+/// A shaded cone or tube from one end to the other, with its radii there.
+fn cone(canvas: &mut Canvas, view: &mut View, ends: [Vec3; 2], radii: [f32; 2], color: Vec3) {
+    const SIDES: usize = 24;
+    let (x, y) = (ends[1] - ends[0]).normalize().any_orthonormal_pair();
+    let rim = |end: usize, side: usize| {
+        let angle = side as f32 / SIDES as f32 * std::f32::consts::TAU;
+        let outward = angle.cos() * x + angle.sin() * y;
+        let shaded = color * shade(view.turn(outward));
+        (ends[end] + radii[end] * outward, shaded)
+    };
+    let mut triangles = Vec::with_capacity(3 * SIDES);
+    for side in 0..SIDES {
+        let [a, b] = [0, 1].map(|end| (rim(end, side), rim(end, side + 1)));
+        triangles.push([a.0, a.1, b.1]);
+        triangles.push([a.0, b.1, b.0]);
+        // The wide end is closed by a disk.
+        let dark = 0.5 * color;
+        triangles.push([(ends[0], dark), (a.0.0, dark), (a.1.0, dark)]);
+    }
+    for triangle in triangles {
+        view.triangle(canvas, triangle);
     }
 }

@@ -73,7 +73,9 @@ impl Plot<'_> {
         }
         let maps = self.maps;
         let table = ScatterTable::new(maps.nodes.clone(), maps.res, maps.rgb.clone());
-        let field = Field::new(&table, self.incidence_deg.to_radians());
+        let photons = maps.ledger.iter().map(|l| l.photons()).sum::<f64>();
+        let theta = self.incidence_deg.to_radians();
+        let field = Field::new(&table, theta, photons / maps.nodes.len() as f64);
 
         let (w, h) = (width * SUPERSAMPLE, height * SUPERSAMPLE);
         let mut canvas = Canvas::new(w, h, PAPER);
@@ -134,15 +136,24 @@ struct Field<'a> {
     query: Vec3,
     /// Largest density of the sphere but for a thousandth of the texels.
     peak: f32,
+    /// Half the angle over which the lobe is averaged, radians.
+    blur: f64,
 }
 
 impl<'a> Field<'a> {
-    fn new(table: &'a ScatterTable, theta: f64) -> Self {
+    /// * `photons`: photons of a node, which say how noisy it is.
+    fn new(table: &'a ScatterTable, theta: f64, photons: f64) -> Self {
+        // Wide enough for a hundred photons of even light, which leaves 10 % of noise; from half a
+        // texel (steps of texels vanish) to three (a highlight keeps its shape).
+        let texels = 6.0 * (table.res() * table.res()) as f64;
+        let width = 0.5 * (100.0 * texels / photons.max(1.0)).sqrt();
+        let texel = std::f64::consts::FRAC_PI_2 / table.res() as f64;
         let mut field = Self {
             table,
             theta,
             query: frame::direction(theta, 0.0).as_vec3(),
             peak: 0.0,
+            blur: texel * width.clamp(0.5, 3.0),
         };
         // One direction a texel. The brightest few are noise or the poles, where a shifted map is
         // singular; they saturate rather than set the scale.
