@@ -45,23 +45,22 @@ fn the_map_is_bright_on_the_cone_and_dark_off_it() {
     let maps = maps(16);
     let canvas = plot(&maps).draw().unwrap();
     assert_eq!((canvas.width(), canvas.height()), (800, 500));
-    // Warm pixels of the left half are the map's bright band: below the middle, since the light
-    // leaves at -30 degrees.
-    let bright = |x: usize, y: usize| {
-        let c = canvas.get(x, y);
-        c.x > 0.5 && c.x - c.z > 0.15
-    };
-    let rows: Vec<usize> = (0..500)
-        .filter(|&y| (0..400).any(|x| bright(x, y)))
+    // A column through the map: dark above, the bright band of the cone below the middle since the
+    // light leaves at -30 degrees, dark again.
+    let x = 200;
+    let night: Vec<usize> = (0..320)
+        .filter(|&y| canvas.get(x, y).element_sum() < 0.4)
         .collect();
-    let dark = |y: usize| {
-        (0..400)
-            .filter(|&x| canvas.get(x, y).element_sum() < 0.5)
-            .count()
-    };
-    assert!(!rows.is_empty());
-    let first = rows[0];
-    assert!(dark(first - 40) > 150, "above the band it is dark");
+    let warmth = |y: usize| canvas.get(x, y).x - canvas.get(x, y).z;
+    let brightest = (0..320)
+        .max_by(|&a, &b| warmth(a).total_cmp(&warmth(b)))
+        .unwrap();
+    let above = night.iter().filter(|&&y| y < brightest).count();
+    let below = night.iter().filter(|&&y| y > brightest).count();
+    assert!(
+        above > 2 * below && below > 10,
+        "{above} rows above, {below} below"
+    );
 }
 
 #[test]
