@@ -138,7 +138,7 @@ pub fn fly(fiber: &Fiber, photon: &Photon, max_events: u32) -> Flight {
                     continue;
                 }
             }
-            flight.path_um += next.t * medium.pigment;
+            flight.path_um += next.pigment_um;
             break next;
         };
         p += hit.t * dir;

@@ -1,7 +1,7 @@
 //! The froth: spheres of air that do not touch, found through a uniform grid of cells.
 
 use super::packing;
-use super::section::Section;
+use super::section::{Section, nearest_period};
 use glam::{DVec3, IVec3};
 
 /// A spherical void, micrometers.
@@ -87,11 +87,7 @@ impl Froth {
     /// Center of the image of a sphere that is nearest in z.
     pub(super) fn center_near(&self, index: u32, z: f64) -> DVec3 {
         let c = self.spheres[index as usize].center;
-        DVec3::new(
-            c.x,
-            c.y,
-            c.z + self.period * ((z - c.z) / self.period).round(),
-        )
+        DVec3::new(c.x, c.y, c.z + nearest_period(z - c.z, self.period))
     }
 
     /// First sphere that the ray enters in `t0..t1`: time and index.

@@ -1,6 +1,6 @@
 //! The uniserial ladder: a stack of puck-shaped voids, one a rung.
 
-use super::section::UnitRay;
+use super::section::{UnitRay, floor, nearest_period};
 use crate::sampling::Rng;
 use glam::DVec3;
 
@@ -21,6 +21,8 @@ pub(super) struct Ladder {
     widest: f64,
 }
 
+/// Level at which a root counts as found: some roundings of its terms, 1e-13 of the size in place.
+const CONVERGED: f64 = 1e-14;
 /// Share of the medulla's radius that a void takes; the rest is its tube's wall.
 const WIDTH: f64 = 0.92;
 
@@ -79,7 +81,7 @@ impl Ladder {
     /// z of the center of the image of a puck that is nearest to `z`.
     pub(super) fn center_near(&self, index: u32, z: f64) -> f64 {
         let center = self.puck(index).center;
-        center + self.period * ((z - center) / self.period).round()
+        center + nearest_period(z - center, self.period)
     }
 
     /// First void that the ray enters in `t0..t1`: time and index.
@@ -107,7 +109,7 @@ impl Ladder {
                     (self.center_near(index, ray.z) - self.puck(index).center) / self.period;
                 i64::from(index) + image.round() as i64 * self.pucks.len() as i64 + step
             }
-            None => (z0 / pitch).floor() as i64 - step,
+            None => floor(z0 / pitch) as i64 - step,
         };
         let z1 = ray.z + t1 * ray.dz;
         loop {
@@ -118,7 +120,7 @@ impl Ladder {
                 return None;
             }
             if (z0 - center) * forward <= puck.half
-                && let Some(t) = puck.enter(ray, center, t0, t1)
+                && let Some(t) = puck.enter(ray, center, (a, b), (t0, t1))
             {
                 return Some((t, index));
             }
@@ -135,7 +137,7 @@ impl Ladder {
     /// The void that holds a point of the unit-circle frame.
     pub(super) fn at(&self, p: DVec3) -> Option<u32> {
         let pitch = self.period / self.pucks.len() as f64;
-        let guess = (p.z / pitch).floor() as i64;
+        let guess = floor(p.z / pitch) as i64;
         (guess - 1..=guess + 1).find_map(|k| {
             let (index, center) = self.rung(k);
             (self.puck(index).level(p, center) < 0.0).then_some(index)
@@ -185,6 +187,7 @@ impl Puck {
     }
 
     /// The slab and cylinder around the puck cut from a ray.
+    #[inline]
     fn bounds(&self, ray: &UnitRay, center: f64) -> Option<(f64, f64)> {
         let (a, b) = ray.inside_circle(self.radius)?;
         if ray.dz == 0.0 {
@@ -197,28 +200,38 @@ impl Puck {
 
     /// Where a ray from outside enters within `t0..t1`. Newton from a point before the root of a
     /// convex function stays before it: it converges without a bracket.
-    fn enter(&self, ray: &UnitRay, center: f64, t0: f64, t1: f64) -> Option<f64> {
-        let (a, b) = self.bounds(ray, center)?;
-        if b <= t0 || a >= t1 {
+    ///
+    /// * `around`: where the ray enters and leaves a cylinder that holds the puck.
+    fn enter(
+        &self,
+        ray: &UnitRay,
+        center: f64,
+        around: (f64, f64),
+        (t0, t1): (f64, f64),
+    ) -> Option<f64> {
+        let (mut t, mut end) = around;
+        if ray.dz != 0.0 {
+            let (m, h) = ((center - ray.z) / ray.dz, self.half / ray.dz.abs());
+            (t, end) = (t.max(m - h), end.min(m + h));
+        }
+        if end <= t0 || t >= t1 {
             return None;
         }
         let level = self.along(ray, center);
-        let mut t = a;
         for _ in 0..60 {
             let (f, df) = level(t);
-            if f > 0.0 && df >= 0.0 {
+            if f <= CONVERGED {
+                return (t >= t0 && t < t1).then_some(t);
+            }
+            if df >= 0.0 {
                 return None;
             }
-            let next = t - f / df;
-            if f <= 1e-15 || next <= t {
-                break;
-            }
-            if next > b {
+            t -= f / df;
+            if t > end {
                 return None;
             }
-            t = next;
         }
-        (t >= t0 && t < t1).then_some(t)
+        None
     }
 
     /// Where a ray from within leaves, by Newton from behind the root.
@@ -231,14 +244,10 @@ impl Puck {
         let mut t = b;
         for _ in 0..60 {
             let (f, df) = level(t);
-            if f <= 1e-15 || df <= 0.0 {
+            if f <= CONVERGED || df <= 0.0 {
                 break;
             }
-            let next = t - f / df;
-            if next >= t {
-                break;
-            }
-            t = next;
+            t -= f / df;
         }
         t.max(0.0)
     }

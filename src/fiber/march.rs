@@ -5,7 +5,7 @@
 //! crossing that must be found, so that rounding can move a hit but never lose one. Only where the
 //! sides agree may a grazing pair of crossings hide, and the parabola through both ends tells.
 
-use super::scales::{Cell, Plane, Scales, distance};
+use super::scales::{Cell, Plane, Scales, Strip, distance};
 use super::section::UnitRay;
 use glam::DVec3;
 
@@ -49,7 +49,9 @@ pub(super) enum March {
 /// Cells in one march; at the axis a ray meets a strip a micrometer, so this is some centimeters.
 const MAX_CELLS: usize = 20_000;
 /// Convergence of a hit, in units of the radius over the ray's radial speed.
-const TOLERANCE: f64 = 1e-13;
+const TOLERANCE: f64 = 1e-12;
+/// Stands for an endless way where infinity would give NaN.
+const AXIAL: f64 = 1e100;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Exit {
@@ -69,6 +71,7 @@ struct Quadratic {
 }
 
 impl Quadratic {
+    #[inline]
     fn at(self, t: f64) -> f64 {
         self.c + t * (2.0 * self.b + t * self.a)
     }
@@ -84,6 +87,7 @@ impl Quadratic {
         }
     }
 
+    #[inline]
     /// First time up to `limit` at which a quadratic that starts at `c >= 0` turns negative.
     fn turns_negative(self, limit: f64) -> Option<f64> {
         let falls = self.at(limit) < 0.0
@@ -101,22 +105,24 @@ impl Quadratic {
     }
 }
 
-/// Values of a cell along the ray from the cell's start.
-struct Window {
-    cell: Cell,
-    /// Distances from the two half planes, their sum, and the rates of them.
+/// A cell seen along the ray, from where the ray enters it.
+struct Window<'a> {
+    strip: &'a Strip,
+    /// Distances from the two half planes and the rates of them.
     a: f64,
     b: f64,
     da: f64,
     db: f64,
+    /// In the cell's own period.
     z: f64,
     dz: f64,
 }
 
-impl Window {
-    fn new(planes: [Plane; 2], cell: Cell, p: DVec3, ray: &UnitRay) -> Self {
+impl<'a> Window<'a> {
+    #[inline]
+    fn new(planes: [Plane; 2], strip: &'a Strip, cell: Cell, p: DVec3, ray: &UnitRay) -> Self {
         Self {
-            cell,
+            strip,
             a: distance(planes[0], p.x, p.y),
             b: -distance(planes[1], p.x, p.y),
             da: distance(planes[0], ray.dx, ray.dy),
@@ -127,6 +133,7 @@ impl Window {
     }
 
     /// `(a + b) (end(u) - z)`: positive below the end.
+    #[inline]
     fn below(&self, end: [f64; 2]) -> Quadratic {
         let (w, dw) = (self.a + self.b, self.da + self.db);
         // Relative to z, so that the coefficients stay small however long the period is.
@@ -138,92 +145,33 @@ impl Window {
         }
     }
 
-    fn across(&self, t: f64) -> f64 {
-        let a = self.a + t * self.da;
-        a / (a + self.b + t * self.db)
-    }
-}
-
-impl Scales {
-    /// Follows `ray` from `t` in `cell` on `side` up to `limit`.
-    pub(super) fn march(
-        &self,
-        ray: &UnitRay,
-        mut t: f64,
-        mut cell: Cell,
-        side: Side,
-        start_on: StartOn,
-        limit: f64,
-    ) -> March {
-        // Positive outside, so that `sign * f` is positive on the ray's side.
-        let sign = if side == Side::Outside { 1.0 } else { -1.0 };
-        let turn = ray.x * ray.dy - ray.y * ray.dx;
-        let [speed, ..] = ray.radius_squared();
-        let mut on = start_on;
-        let mut p = ray.at(t);
-        for _ in 0..MAX_CELLS {
-            let planes = [
-                self.planes[cell.sector],
-                self.planes[self.next_sector(cell.sector)],
-            ];
-            let window = Window::new(planes, cell, p, ray);
-            let (mut length, exit) = self.leave_cell(&window, turn, on, limit - t);
-            if length == f64::INFINITY {
-                return March::Lost;
-            }
-            length = length.max(0.0);
-            let end = ray.at(t + length);
-            let rho2 = end.x * end.x + end.y * end.y;
-            let r1 = self.radius(cell, window.across(length), end.z);
-            let f = Crossing {
-                scales: self,
-                window: &window,
-                z: p.z,
-                on_face: on == StartOn::Face,
-                c0: p.x * p.x + p.y * p.y,
-                c1: p.x * ray.dx + p.y * ray.dy,
-                c2: speed,
-                sign,
-            };
-            if let Some(tau) = f.first(length, r1, sign * (rho2 - r1 * r1)) {
-                let hit = ray.at(t + tau);
-                return March::Face {
-                    t: t + tau,
-                    cell,
-                    gradient: self.face_gradient(cell, hit),
-                };
-            }
-            t += length;
-            p = end;
-            if exit == Exit::Limit {
-                return March::Through;
-            }
-            let old = cell;
-            (cell, on) = self.step(cell, exit, p.z);
-            let r = self.radius(cell, self.across(cell.sector, p.x, p.y), p.z);
-            if sign * (rho2 - r * r) < 0.0 {
-                return self.step_hit(t, p, old, cell, exit, side);
-            }
-        }
-        March::Lost
+    /// `1 + E` at `t`.
+    #[inline]
+    fn radius(&self, t: f64) -> f64 {
+        let (a, b) = (self.a + t * self.da, self.b + t * self.db);
+        let z = self.z + t * self.dz;
+        let s = self.strip;
+        let e0 = s.height[0] + s.slope[0] * z;
+        let e1 = s.height[1] + s.slope[1] * z;
+        1.0 + (e0 * b + e1 * a) / (a + b)
     }
 
-    /// How far the ray stays in the window's cell and where it leaves.
-    fn leave_cell(&self, window: &Window, turn: f64, on: StartOn, limit: f64) -> (f64, Exit) {
-        let (mut length, mut exit) = (limit, Exit::Limit);
+    /// How far the ray stays in the cell and where it leaves.
+    #[inline]
+    fn leave(&self, turn: f64, on: StartOn, limit: f64) -> (f64, Exit) {
+        let (mut length, mut exit) = (limit.max(0.0), Exit::Limit);
         if turn > 0.0 {
-            if window.db < 0.0 && window.b < -window.db * length {
-                (length, exit) = (window.b.max(0.0) / -window.db, Exit::NextSector);
+            if self.db < 0.0 && self.b < -self.db * length {
+                (length, exit) = (self.b.max(0.0) / -self.db, Exit::NextSector);
             }
-        } else if turn < 0.0 && window.da < 0.0 && window.a < -window.da * length {
-            (length, exit) = (window.a.max(0.0) / -window.da, Exit::PreviousSector);
+        } else if turn < 0.0 && self.da < 0.0 && self.a < -self.da * length {
+            (length, exit) = (self.a.max(0.0) / -self.da, Exit::PreviousSector);
         }
         if length == f64::INFINITY {
             // An axial ray meets neither planes nor limit: only the strip's ends count.
-            length = f64::MAX.sqrt();
+            length = AXIAL;
         }
-        let Cell { sector, strip, .. } = window.cell;
-        let mut up = window.below(self.stack(sector)[strip].end);
+        let mut up = self.below(self.strip.end);
         up.c = if on == StartOn::Upper {
             0.0
         } else {
@@ -232,7 +180,7 @@ impl Scales {
         if let Some(t) = up.turns_negative(length) {
             (length, exit) = (t, Exit::Up);
         }
-        let down = window.below(self.begin(sector, strip));
+        let down = self.below(self.strip.begin);
         let down = Quadratic {
             a: -down.a,
             b: -down.b,
@@ -245,10 +193,84 @@ impl Scales {
         if let Some(t) = down.turns_negative(length) {
             (length, exit) = (t, Exit::Down);
         }
-        if exit == Exit::Limit {
-            length = limit;
+        if length == AXIAL {
+            length = f64::INFINITY;
         }
         (length, exit)
+    }
+}
+
+impl Scales {
+    /// Follows `ray` from `t` in `cell` on `side` up to `limit`.
+    pub(super) fn march(
+        &self,
+        ray: &UnitRay,
+        mut t: f64,
+        mut cell: Cell,
+        side: Side,
+        mut on: StartOn,
+        limit: f64,
+    ) -> March {
+        // Positive outside, so that `sign * f` is positive on the ray's side.
+        let sign = if side == Side::Outside { 1.0 } else { -1.0 };
+        let turn = ray.x * ray.dy - ray.y * ray.dx;
+        let [c2, ..] = ray.radius_squared();
+        let mut p = ray.at(t);
+        let mut c0 = p.x * p.x + p.y * p.y;
+        // 1 + E at the start of the cell; on the surface it is the radius itself.
+        let mut r0 = if on == StartOn::Face {
+            c0.sqrt()
+        } else {
+            self.radius(cell, self.across(cell.sector, p.x, p.y), p.z)
+        };
+        for _ in 0..MAX_CELLS {
+            let window = Window::new(
+                self.sectors[cell.sector].planes,
+                self.strip(cell),
+                cell,
+                p,
+                ray,
+            );
+            let (length, exit) = window.leave(turn, on, limit - t);
+            if length == f64::INFINITY {
+                return March::Lost;
+            }
+            let end = ray.at(t + length);
+            let c_end = end.x * end.x + end.y * end.y;
+            let r1 = window.radius(length);
+            let crossing = Crossing {
+                window: &window,
+                r0,
+                c: if on == StartOn::Face {
+                    0.0
+                } else {
+                    (sign * (c0 - r0 * r0)).max(0.0)
+                },
+                c1: p.x * ray.dx + p.y * ray.dy,
+                c2,
+                sign,
+            };
+            let on_face = on == StartOn::Face;
+            if let Some(tau) = crossing.first(length, r1, sign * (c_end - r1 * r1), on_face) {
+                let hit = ray.at(t + tau);
+                return March::Face {
+                    t: t + tau,
+                    cell,
+                    gradient: self.face_gradient(cell, hit),
+                };
+            }
+            if exit == Exit::Limit {
+                return March::Through;
+            }
+            (t, p, c0) = (t + length, end, c_end);
+            let old = cell;
+            (cell, on) = self.step(cell, exit, p.z);
+            r0 = self.radius(cell, self.across(cell.sector, p.x, p.y), p.z);
+            if sign * (c0 - r0 * r0) < 0.0 {
+                return self.step_hit(t, p, old, cell, exit, side);
+            }
+        }
+        March::Lost
     }
 
     /// The cell behind an exit.
@@ -263,7 +285,7 @@ impl Scales {
                 } else {
                     (self.previous_sector(cell.sector), 1.0)
                 };
-                let strip = cell.strip.min(self.stack(sector).len() - 1);
+                let strip = cell.strip.min(self.count(sector) - 1);
                 let near = Cell {
                     sector,
                     strip,
@@ -302,12 +324,11 @@ impl Scales {
 
 /// `f = rho^2 - (1 + E)^2` along the ray in one cell.
 struct Crossing<'a> {
-    scales: &'a Scales,
-    window: &'a Window,
-    z: f64,
-    on_face: bool,
+    window: &'a Window<'a>,
+    /// `1 + E` and signed f at the start.
+    r0: f64,
+    c: f64,
     /// Coefficients of rho^2.
-    c0: f64,
     c1: f64,
     c2: f64,
     sign: f64,
@@ -321,66 +342,56 @@ impl Crossing<'_> {
     /// With E replaced by its chord f is a quadratic with exact values at both ends. Its root is
     /// refined by chords from the start to the last estimate: E is so nearly linear in a cell that
     /// each pass wins many digits.
-    fn first(&self, length: f64, r1: f64, f1: f64) -> Option<f64> {
-        let r0 = if self.on_face {
-            self.c0.sqrt()
-        } else {
-            self.scales
-                .radius(self.window.cell, self.window.across(0.0), self.z)
-        };
-        let c = if self.on_face {
-            0.0
-        } else {
-            (self.sign * (self.c0 - r0 * r0)).max(0.0)
-        };
-        let chord = |t: f64, r: f64| {
-            let k = (r - r0) / t;
-            Quadratic {
-                a: self.sign * (self.c2 - k * k),
-                b: self.sign * (self.c1 - r0 * k),
-                c,
-            }
-        };
-        if length <= 0.0 {
-            return (f1 < 0.0).then_some(0.0);
-        }
-        let q = chord(length, r1);
+    #[inline]
+    fn first(&self, length: f64, r1: f64, f1: f64, on_face: bool) -> Option<f64> {
         let odd = f1 < 0.0;
-        let pair = !odd
-            && !self.on_face
-            && q.a > 0.0
-            && q.b < 0.0
-            && -q.b < length * q.a
-            && q.b * q.b > q.a * q.c;
-        if !odd && !pair {
+        if !odd && on_face {
             return None;
         }
-        let root = |q: Quadratic| {
-            if c > 0.0 {
-                q.falling_root()
-            } else if q.b > 0.0 && q.a < 0.0 {
-                -2.0 * q.b / q.a
-            } else {
-                0.0
-            }
-        };
-        let mut t = root(q).clamp(0.0, length);
+        if length <= 0.0 {
+            return odd.then_some(0.0);
+        }
+        let q = self.chord(length, r1);
+        let pair = || q.a > 0.0 && q.b < 0.0 && -q.b < length * q.a && q.b * q.b > q.a * q.c;
+        (odd || pair()).then(|| self.refine(q, length))
+    }
+
+    /// f with E replaced by the chord to `1 + E = r` at `t`.
+    #[inline]
+    fn chord(&self, t: f64, r: f64) -> Quadratic {
+        let k = (r - self.r0) / t;
+        Quadratic {
+            a: self.sign * (self.c2 - k * k),
+            b: self.sign * (self.c1 - self.r0 * k),
+            c: self.c,
+        }
+    }
+
+    fn root(&self, q: Quadratic) -> f64 {
+        if self.c > 0.0 {
+            q.falling_root()
+        } else if q.b > 0.0 && q.a < 0.0 {
+            -2.0 * q.b / q.a
+        } else {
+            0.0
+        }
+    }
+
+    fn refine(&self, q: Quadratic, length: f64) -> f64 {
+        let mut t = self.root(q).clamp(0.0, length);
         for _ in 0..8 {
             if t <= 0.0 {
                 break;
             }
-            let r = self.scales.radius(
-                self.window.cell,
-                self.window.across(t),
-                self.z + t * self.window.dz,
-            );
-            let next = root(chord(t, r)).clamp(0.0, length);
+            let next = self
+                .root(self.chord(t, self.window.radius(t)))
+                .clamp(0.0, length);
             let moved = (next - t).abs();
             t = next;
-            if moved * self.c2.sqrt() <= TOLERANCE {
+            if moved * moved * self.c2 <= TOLERANCE * TOLERANCE {
                 break;
             }
         }
-        Some(t)
+        t
     }
 }

@@ -11,6 +11,7 @@ use glam::DVec3;
 /// What fills the medulla.
 #[derive(Clone, Debug)]
 pub(super) enum Voids {
+    /// A homogeneous medium.
     None,
     Ladder(Ladder),
     Froth(Froth),
@@ -21,9 +22,8 @@ pub(super) enum Voids {
 pub(super) struct Medulla {
     /// Radius in units of the semi-axes; 0 for none.
     pub(super) ratio: f64,
-    /// Whether its outline is a boundary: when its matrix differs from the cortex. Otherwise
-    /// the voids lie in the cortex and rays need not stop at the outline.
-    pub(super) outlined: bool,
+    /// Pigment of the walls between voids above that of the cortex, -1 for clear walls.
+    excess_pigment: f64,
     pub(super) voids: Voids,
 }
 
@@ -56,7 +56,7 @@ impl Medulla {
         if ratio <= 0.0 || medulla.kind == MedullaKind::None {
             return Ok(Self {
                 ratio: 0.0,
-                outlined: false,
+                excess_pigment: 0.0,
                 voids: Voids::None,
             });
         }
@@ -106,16 +106,26 @@ impl Medulla {
                 Voids::Froth(Froth::new(packing, section, ratio))
             }
         };
-        let homogeneous = matches!(medulla.kind, MedullaKind::Medium { .. });
-        #[expect(
-            clippy::float_cmp,
-            reason = "exactly the cortex's pigment, as written in the file"
-        )]
-        let outlined = homogeneous || medulla.pigment != 1.0;
         Ok(Self {
             ratio,
-            outlined,
+            excess_pigment: medulla.pigment - 1.0,
             voids,
+        })
+    }
+
+    /// Whether it is one medium with an outline of its own. The walls between voids are cortex.
+    pub(super) fn homogeneous(&self) -> bool {
+        matches!(self.voids, Voids::None)
+    }
+
+    /// What the walls between voids add to the pigment along a ray through keratin from 0 to `t`.
+    #[inline]
+    pub(super) fn extra_pigment(&self, ray: &UnitRay, t: f64) -> f64 {
+        if self.excess_pigment == 0.0 || self.homogeneous() {
+            return 0.0;
+        }
+        ray.inside_circle(self.ratio).map_or(0.0, |(a, b)| {
+            self.excess_pigment * (b.min(t) - a.max(0.0)).max(0.0)
         })
     }
 
@@ -128,15 +138,6 @@ impl Medulla {
                 let across = std::f64::consts::PI * self.ratio * self.ratio;
                 froth.volume() / (across * section.a * section.b * period)
             }
-        }
-    }
-
-    /// The region between the voids.
-    pub(super) fn matrix(&self) -> Region {
-        if self.outlined {
-            Region::Medulla
-        } else {
-            Region::Cortex
         }
     }
 
@@ -183,7 +184,7 @@ impl Medulla {
         match &self.voids {
             Voids::None => DVec3::Z,
             Voids::Ladder(ladder) => {
-                let unit = DVec3::new(point.x / section.a, point.y / section.b, point.z);
+                let unit = section.unit_point(point);
                 ladder
                     .puck(index)
                     .gradient(unit, ladder.center_near(index, point.z))
@@ -197,7 +198,7 @@ impl Medulla {
 
     /// The region of a point inside the cuticle.
     pub(super) fn region_at(&self, section: &Section, point: DVec3) -> Region {
-        let unit = DVec3::new(point.x / section.a, point.y / section.b, point.z);
+        let unit = section.unit_point(point);
         let void = match &self.voids {
             Voids::None => None,
             Voids::Ladder(ladder) => ladder.at(unit),
@@ -205,8 +206,9 @@ impl Medulla {
         };
         if void.is_some() {
             Region::Void
-        } else if unit.x * unit.x + unit.y * unit.y < self.ratio * self.ratio {
-            self.matrix()
+        } else if self.homogeneous() && unit.x * unit.x + unit.y * unit.y < self.ratio * self.ratio
+        {
+            Region::Medulla
         } else {
             Region::Cortex
         }

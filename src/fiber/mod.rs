@@ -32,10 +32,9 @@ use surface::{Inward, OuterHit, OuterState, Surface};
 pub enum Region {
     /// Air around the fiber.
     Outside,
-    /// Cuticle and cortex: pigmented keratin.
+    /// Pigmented keratin: cuticle, cortex, and the medulla's walls between its voids.
     Cortex,
-    /// The medulla between its voids, or all of it where it is a homogeneous scattering medium. It
-    /// has the cortex's index. Where its pigment is the cortex's too, its walls are `Cortex`.
+    /// A medulla without voids: a homogeneous scattering medium with the cortex's index.
     Medulla,
     /// A void of the medulla.
     Void,
@@ -61,6 +60,9 @@ pub struct Hit {
     pub t: f64,
     /// Unit geometric normal, against the ray (`dir . normal < 0`).
     pub normal: DVec3,
+    /// The way to the hit times the pigment along it, relative to the cortex, micrometers. The
+    /// walls between voids hold more or less pigment than the cortex but have no boundary with it.
+    pub pigment_um: f64,
     /// The region on the far side.
     pub to: Region,
     /// GGX roughness (alpha) of the boundary, 0 smooth.
@@ -79,7 +81,7 @@ pub struct HitState {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Element {
     Outer(OuterState),
-    /// The outline of the medulla.
+    /// The outline of a medulla without voids.
     Outline,
     Void(u32),
 }
@@ -185,7 +187,7 @@ impl Fiber {
 
     /// The region that holds a point, found from the shapes alone, without any ray.
     pub fn region_at(&self, point: DVec3) -> Region {
-        let unit = DVec3::new(point.x / self.section.a, point.y / self.section.b, point.z);
+        let unit = self.section.unit_point(point);
         if self.surface.contains(unit) {
             self.medulla.region_at(&self.section, point)
         } else {
@@ -221,7 +223,7 @@ impl Fiber {
             Some(Element::Outer(state)) => Some(state),
             _ => None,
         };
-        match region {
+        let mut hit = match region {
             Region::Outside if from.is_none() => {
                 // Far origins cost digits: start beside the axis, on the way in.
                 let [a, b, _] = rays.unit.radius_squared();
@@ -229,27 +231,33 @@ impl Fiber {
                 let ahead = (ahead - 2.0 * self.surface.rho_max() / a.sqrt()).max(0.0);
                 let mut hit = self.enter(origin + ahead * dir, dir, None)?;
                 hit.t += ahead;
-                Some(hit)
+                hit
             }
-            Region::Outside => self.enter(origin, dir, outer),
+            Region::Outside => self.enter(origin, dir, outer)?,
             Region::Cortex => {
                 let core = |t0, t1| self.core_hit(&rays, t0, t1, element);
                 match self.surface.leave(&rays.unit, outer, core) {
-                    Inward::Outer(hit) => Some(self.outer_hit(&rays, hit, Region::Outside)),
-                    Inward::Core(hit) => Some(hit),
-                    Inward::Lost => None,
+                    Inward::Outer(hit) => self.outer_hit(&rays, hit, Region::Outside),
+                    Inward::Core(hit) => hit,
+                    Inward::Lost => return None,
                 }
             }
-            Region::Medulla => self.medulla_hit(&rays, element),
+            Region::Medulla => self.outline_from_inside(&rays, element)?,
             Region::Void => {
                 let void = match element {
                     Some(Element::Void(index)) => Some(index),
                     _ => None,
                 };
                 let (t, index) = self.medulla.leave_void(&rays, void)?;
-                Some(self.void_hit(&rays, t, index, self.medulla.matrix()))
+                self.void_hit(&rays, t, index, Region::Cortex)
             }
-        }
+        };
+        hit.pigment_um = match region {
+            Region::Outside | Region::Void => 0.0,
+            Region::Medulla => hit.t * self.structure.medulla.pigment,
+            Region::Cortex => hit.t + self.medulla.extra_pigment(&rays.unit, hit.t),
+        };
+        Some(hit)
     }
 
     /// Where a ray outside enters the fiber.
@@ -264,7 +272,7 @@ impl Fiber {
         if self.medulla.ratio <= 0.0 {
             return None;
         }
-        if self.medulla.outlined {
+        if self.medulla.homogeneous() {
             // The outline is convex: a ray that has just left it does not come back.
             if from == Some(Element::Outline) {
                 return None;
@@ -284,8 +292,8 @@ impl Fiber {
         Some(self.void_hit(rays, t, index, Region::Void))
     }
 
-    /// What a ray between the voids of an outlined medulla meets.
-    fn medulla_hit(&self, rays: &Rays, from: Option<Element>) -> Option<Hit> {
+    /// Where a ray inside a homogeneous medulla leaves it.
+    fn outline_from_inside(&self, rays: &Rays, from: Option<Element>) -> Option<Hit> {
         let [a, b, c] = rays.unit.radius_squared();
         let t = if from == Some(Element::Outline) {
             -2.0 * b / a
@@ -294,59 +302,42 @@ impl Fiber {
             (-b + (b * b - a * c).max(0.0).sqrt()) / a
         };
         // An axial ray stays inside for ever.
-        let t = if t.is_nan() {
-            f64::INFINITY
-        } else {
-            t.max(0.0)
-        };
-        if let Some(hit) = self.next_void(rays, 0.0, t, from) {
-            return Some(hit);
-        }
         t.is_finite()
-            .then(|| self.outline_hit(rays, t, Region::Cortex))
+            .then(|| self.outline_hit(rays, t.max(0.0), Region::Cortex))
     }
 
     fn outer_hit(&self, rays: &Rays, hit: OuterHit, to: Region) -> Hit {
         let cuticle = &self.structure.cuticle;
+        let roughness = match hit.state {
+            OuterState::Riser { .. } => cuticle.riser_roughness,
+            OuterState::Smooth | OuterState::Face { .. } => cuticle.roughness,
+        };
         Hit {
-            t: hit.t,
-            normal: self.section.normal_against(hit.gradient, rays.dir),
-            to,
-            roughness: match hit.state {
-                OuterState::Riser { .. } => cuticle.riser_roughness,
-                OuterState::Smooth | OuterState::Face { .. } => cuticle.roughness,
-            },
-            state: HitState {
-                element: Element::Outer(hit.state),
-            },
+            roughness,
+            ..self.hit(rays, hit.t, hit.gradient, to, Element::Outer(hit.state))
         }
     }
 
     fn outline_hit(&self, rays: &Rays, t: f64, to: Region) -> Hit {
         let p = rays.unit.at(t);
-        let gradient = DVec3::new(p.x, p.y, 0.0);
-        Hit {
-            t,
-            normal: self.section.normal_against(gradient, rays.dir),
-            to,
-            roughness: 0.0,
-            state: HitState {
-                element: Element::Outline,
-            },
-        }
+        self.hit(rays, t, DVec3::new(p.x, p.y, 0.0), to, Element::Outline)
     }
 
     fn void_hit(&self, rays: &Rays, t: f64, index: u32, to: Region) -> Hit {
         let point = rays.origin + t * rays.dir;
         let gradient = self.medulla.void_gradient(&self.section, point, index);
+        self.hit(rays, t, gradient, to, Element::Void(index))
+    }
+
+    /// A smooth boundary; `gradient` is its normal in the unit-circle frame, of any length and sign.
+    fn hit(&self, rays: &Rays, t: f64, gradient: DVec3, to: Region, element: Element) -> Hit {
         Hit {
             t,
+            pigment_um: t,
             normal: self.section.normal_against(gradient, rays.dir),
             to,
             roughness: 0.0,
-            state: HitState {
-                element: Element::Void(index),
-            },
+            state: HitState { element },
         }
     }
 }

@@ -8,12 +8,15 @@
 //! exact wall.
 
 use super::pattern::Pattern;
-use super::section::{Line, Section};
+use super::section::{Line, Section, floor};
 use glam::DVec3;
 
-/// One strip of one sector: values on the two half planes.
+/// One strip of one sector: values on the two half planes. One cache line.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub(super) struct Strip {
+    /// Lower end, micrometers: the upper one of the strip below.
+    pub(super) begin: [f64; 2],
     /// Upper end, micrometers.
     pub(super) end: [f64; 2],
     /// Height at z = 0 relative to the radius.
@@ -29,6 +32,15 @@ pub(super) struct Plane {
     pub(super) sin: f64,
 }
 
+/// The wedge between two half planes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sector {
+    /// Where it begins and ends.
+    pub(super) planes: [Plane; 2],
+    first: u32,
+    count: u32,
+}
+
 /// A cell and the whole periods between its own z and the ray's.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
@@ -41,11 +53,9 @@ pub(super) struct Cell {
 #[derive(Clone, Debug)]
 pub(super) struct Scales {
     pub(super) period: f64,
-    /// Half plane `i` begins sector `i`.
-    pub(super) planes: Vec<Plane>,
+    inverse_period: f64,
+    pub(super) sectors: Vec<Sector>,
     strips: Vec<Strip>,
-    /// Where the strips of a sector begin; one more entry than sectors.
-    first: Vec<u32>,
     /// Sector that holds the start of each step of the pseudo-angle.
     start_of_angle: Vec<u16>,
     /// Radii that enclose the surface, with a margin above rounding.
@@ -59,79 +69,71 @@ const ANGLE_STEPS: usize = 1024;
 impl Scales {
     /// Joins the lines of a pattern.
     pub(super) fn new(pattern: &Pattern, lines: &[Line]) -> Self {
-        let planes: Vec<Plane> = lines
-            .iter()
-            .map(|l| Plane {
-                cos: l.cos,
-                sin: l.sin,
-            })
-            .collect();
-        let (mut strips, mut first) = (Vec::new(), vec![0]);
+        let plane = |i: usize| Plane {
+            cos: lines[i % lines.len()].cos,
+            sin: lines[i % lines.len()].sin,
+        };
+        let (mut strips, mut sectors) = (Vec::new(), Vec::new());
         for i in 0..lines.len() {
+            let first = strips.len();
             join(pattern, lines, i, &mut strips);
-            first.push(strips.len() as u32);
+            sectors.push(Sector {
+                planes: [plane(i), plane(i + 1)],
+                first: first as u32,
+                count: (strips.len() - first) as u32,
+            });
         }
         let mut start_of_angle = Vec::with_capacity(ANGLE_STEPS);
         let mut sector = 0;
         for step in 0..ANGLE_STEPS {
             let angle = 4.0 * step as f64 / ANGLE_STEPS as f64;
-            while sector + 1 < planes.len()
-                && pseudo_angle(planes[sector + 1].cos, planes[sector + 1].sin) <= angle
+            while sector + 1 < lines.len()
+                && pseudo_angle(lines[sector + 1].cos, lines[sector + 1].sin) <= angle
             {
                 sector += 1;
             }
             start_of_angle.push(sector as u16);
         }
-        let mut scales = Self {
-            period: pattern.period_um,
-            planes,
-            strips,
-            first,
-            start_of_angle,
-            rho_min: 1.0,
-            rho_max: 1.0,
-        };
         let (mut lowest, mut highest) = (0.0f64, 0.0f64);
-        for sector in 0..lines.len() {
-            for (strip, s) in scales.stack(sector).iter().enumerate() {
-                let begin = scales.begin(sector, strip);
-                for (side, begin) in begin.into_iter().enumerate() {
-                    for z in [begin, s.end[side]] {
-                        // The height is bilinear: its extremes on a strip are at corners, but for
-                        // strips whose ends slope across u, which the margin below takes in.
-                        let height = s.height[side] + s.slope[side] * z;
-                        lowest = lowest.min(height);
-                        highest = highest.max(height);
-                    }
+        for s in &strips {
+            for side in 0..2 {
+                for z in [s.begin[side], s.end[side]] {
+                    // The height is bilinear: its extremes on a strip are at corners, but for
+                    // strips whose ends slope across u, which the margin below takes in.
+                    let height = s.height[side] + s.slope[side] * z;
+                    lowest = lowest.min(height);
+                    highest = highest.max(height);
                 }
             }
         }
         let margin = 0.02 * (highest - lowest) + 1e-9;
-        scales.rho_min = 1.0 + lowest - margin;
-        scales.rho_max = 1.0 + highest + margin;
-        scales
-    }
-
-    /// The strips of a sector.
-    #[inline]
-    pub(super) fn stack(&self, sector: usize) -> &[Strip] {
-        &self.strips[self.first[sector] as usize..self.first[sector + 1] as usize]
-    }
-
-    /// Lower ends of a strip on the two half planes.
-    #[inline]
-    pub(super) fn begin(&self, sector: usize, strip: usize) -> [f64; 2] {
-        let stack = self.stack(sector);
-        if strip > 0 {
-            return stack[strip - 1].end;
+        Self {
+            period: pattern.period_um,
+            inverse_period: 1.0 / pattern.period_um,
+            sectors,
+            strips,
+            start_of_angle,
+            rho_min: 1.0 + lowest - margin,
+            rho_max: 1.0 + highest + margin,
         }
-        stack[stack.len() - 1].end.map(|z| z - self.period)
+    }
+
+    /// The strip of a cell.
+    #[inline]
+    pub(super) fn strip(&self, cell: Cell) -> &Strip {
+        &self.strips[self.sectors[cell.sector].first as usize + cell.strip]
+    }
+
+    /// How many strips a sector has.
+    #[inline]
+    pub(super) fn count(&self, sector: usize) -> usize {
+        self.sectors[sector].count as usize
     }
 
     /// The cell above.
     #[inline]
     pub(super) fn above(&self, mut cell: Cell) -> Cell {
-        if cell.strip + 1 == self.stack(cell.sector).len() {
+        if cell.strip + 1 == self.count(cell.sector) {
             cell.strip = 0;
             cell.shift += self.period;
         } else {
@@ -144,7 +146,7 @@ impl Scales {
     #[inline]
     pub(super) fn below(&self, mut cell: Cell) -> Cell {
         if cell.strip == 0 {
-            cell.strip = self.stack(cell.sector).len() - 1;
+            cell.strip = self.count(cell.sector) - 1;
             cell.shift -= self.period;
         } else {
             cell.strip -= 1;
@@ -155,7 +157,7 @@ impl Scales {
     /// Index of the half plane that ends a sector.
     #[inline]
     pub(super) fn next_sector(&self, sector: usize) -> usize {
-        if sector + 1 == self.planes.len() {
+        if sector + 1 == self.sectors.len() {
             0
         } else {
             sector + 1
@@ -166,7 +168,7 @@ impl Scales {
     #[inline]
     pub(super) fn previous_sector(&self, sector: usize) -> usize {
         if sector == 0 {
-            self.planes.len() - 1
+            self.sectors.len() - 1
         } else {
             sector - 1
         }
@@ -176,65 +178,50 @@ impl Scales {
     pub(super) fn locate(&self, p: DVec3) -> Cell {
         let angle = pseudo_angle(p.x, p.y) * (ANGLE_STEPS as f64 / 4.0);
         let mut sector = usize::from(self.start_of_angle[(angle as usize).min(ANGLE_STEPS - 1)]);
-        // The table gives the sector at the start of the step; a few may follow within it.
-        while sector + 1 < self.planes.len() && distance(self.planes[sector + 1], p.x, p.y) >= 0.0 {
-            let next = self.planes[sector + 1];
-            if next.cos * p.x + next.sin * p.y < 0.0 {
+        // The table gives the sector at the start of the step; the next may begin within it.
+        loop {
+            let [_, end] = self.sectors[sector].planes;
+            let beyond = distance(end, p.x, p.y) >= 0.0 && end.cos * p.x + end.sin * p.y > 0.0;
+            if !beyond || sector + 1 == self.sectors.len() {
                 break;
             }
             sector += 1;
         }
-        let u = self.across(sector, p.x, p.y);
-        let shift = self.period * (p.z / self.period).floor();
-        let guess = Cell {
+        let shift = self.period * floor(p.z * self.inverse_period);
+        let n = self.count(sector);
+        let strip = ((p.z - shift) * self.inverse_period * n as f64) as usize;
+        let near = Cell {
             sector,
-            strip: 0,
+            strip: strip.min(n - 1),
             shift,
         };
-        let n = self.stack(sector).len();
-        let strip = ((p.z - shift) / self.period * n as f64) as usize;
-        self.settle(
-            Cell {
-                strip: strip.min(n - 1),
-                ..guess
-            },
-            u,
-            p.z,
-        )
+        self.settle(near, self.across(sector, p.x, p.y), p.z)
     }
 
     /// Position of a point between the half planes of a sector, 0..1.
     #[inline]
     pub(super) fn across(&self, sector: usize, x: f64, y: f64) -> f64 {
-        let a = distance(self.planes[sector], x, y);
-        let b = -distance(self.planes[self.next_sector(sector)], x, y);
-        a / (a + b)
+        let [begin, end] = self.sectors[sector].planes;
+        let a = distance(begin, x, y);
+        a / (a - distance(end, x, y))
     }
 
     /// Walks from a near strip of the right sector to the one that holds `z` at `u`.
     #[inline]
     pub(super) fn settle(&self, mut cell: Cell, u: f64, z: f64) -> Cell {
-        let stack = self.stack(cell.sector);
-        let end = |strip: usize| {
-            let e = stack[strip].end;
-            e[0] + u * (e[1] - e[0])
-        };
-        while z - cell.shift > end(cell.strip) {
+        while z - cell.shift > at(self.strip(cell).end, u) {
             cell = self.above(cell);
         }
-        loop {
-            let below = self.below(cell);
-            if z - below.shift > end(below.strip) {
-                return cell;
-            }
-            cell = below;
+        while z - cell.shift <= at(self.strip(cell).begin, u) {
+            cell = self.below(cell);
         }
+        cell
     }
 
     /// `1 + E` of a cell at `u` and the ray's `z`.
     #[inline]
     pub(super) fn radius(&self, cell: Cell, u: f64, z: f64) -> f64 {
-        let s = &self.stack(cell.sector)[cell.strip];
+        let s = self.strip(cell);
         let z = z - cell.shift;
         let e0 = s.height[0] + s.slope[0] * z;
         let e1 = s.height[1] + s.slope[1] * z;
@@ -243,7 +230,7 @@ impl Scales {
 
     /// Whether a point is inside the surface.
     pub(super) fn contains(&self, p: DVec3) -> bool {
-        let rho = p.x.hypot(p.y);
+        let rho = (p.x * p.x + p.y * p.y).sqrt();
         if rho <= self.rho_min || rho >= self.rho_max {
             return rho <= self.rho_min;
         }
@@ -253,11 +240,11 @@ impl Scales {
 
     /// Gradient of `rho - 1 - E` in the unit-circle frame: the outward normal of a face.
     pub(super) fn face_gradient(&self, cell: Cell, p: DVec3) -> DVec3 {
-        let s = &self.stack(cell.sector)[cell.strip];
+        let s = self.strip(cell);
         let (u, du) = self.across_gradient(cell.sector, p);
         let z = p.z - cell.shift;
         let along_u = s.height[1] - s.height[0] + (s.slope[1] - s.slope[0]) * z;
-        let inverse_rho = 1.0 / p.x.hypot(p.y);
+        let inverse_rho = 1.0 / (p.x * p.x + p.y * p.y).sqrt();
         DVec3::new(
             p.x * inverse_rho - along_u * du[0],
             p.y * inverse_rho - along_u * du[1],
@@ -267,7 +254,7 @@ impl Scales {
 
     /// Gradient of `z - end(u)`: the normal of the riser above a strip, toward the tip.
     pub(super) fn riser_gradient(&self, cell: Cell, p: DVec3) -> DVec3 {
-        let end = self.stack(cell.sector)[cell.strip].end;
+        let end = self.strip(cell).end;
         let (_, du) = self.across_gradient(cell.sector, p);
         let along_u = end[1] - end[0];
         DVec3::new(-along_u * du[0], -along_u * du[1], 1.0)
@@ -275,7 +262,7 @@ impl Scales {
 
     /// `u` and its derivatives by x and y.
     fn across_gradient(&self, sector: usize, p: DVec3) -> (f64, [f64; 2]) {
-        let (p0, p1) = (self.planes[sector], self.planes[self.next_sector(sector)]);
+        let [p0, p1] = self.sectors[sector].planes;
         let a = distance(p0, p.x, p.y);
         let w = a - distance(p1, p.x, p.y);
         let (wx, wy) = (p1.sin - p0.sin, p0.cos - p1.cos);
@@ -286,6 +273,12 @@ impl Scales {
         ];
         (a / w, du)
     }
+}
+
+/// A value between those on the two half planes.
+#[inline]
+pub(super) fn at(ends: [f64; 2], u: f64) -> f64 {
+    ends[0] + u * (ends[1] - ends[0])
 }
 
 /// Signed distance of a point from a half plane's plane, positive toward larger angles.
@@ -317,6 +310,7 @@ fn join(pattern: &Pattern, lines: &[Line], i: usize, strips: &mut Vec<Strip>) {
         if tile == u32::MAX {
             return;
         }
+        let begin = end;
         for side in 0..2 {
             if rank(side) == tile {
                 end[side] = spans[side][at[side]].end_um;
@@ -329,6 +323,7 @@ fn join(pattern: &Pattern, lines: &[Line], i: usize, strips: &mut Vec<Strip>) {
         }
         let t = pattern.tiles[tile as usize];
         strips.push(Strip {
+            begin,
             end,
             height: pair.map(|l| t.height_um / lines[l].support_um),
             slope: pair.map(|l| t.slope / lines[l].support_um),

@@ -11,6 +11,7 @@ pub(super) struct Section {
     pub(super) a: f64,
     /// Semi-axis along y, micrometers.
     pub(super) b: f64,
+    inverse: [f64; 2],
 }
 
 /// A ray in the unit-circle frame: x and y in units of the semi-axes, z and t in micrometers.
@@ -41,15 +42,18 @@ impl Section {
     /// * `diameter_um`: geometric mean of the axes; `aspect`: major over minor axis.
     pub(super) fn new(diameter_um: f64, aspect: f64) -> Self {
         let radius = 0.5 * diameter_um;
+        let (a, b) = (radius * aspect.sqrt(), radius / aspect.sqrt());
         Self {
-            a: radius * aspect.sqrt(),
-            b: radius / aspect.sqrt(),
+            a,
+            b,
+            inverse: [1.0 / a, 1.0 / b],
         }
     }
 
     /// The ray in the unit-circle frame.
+    #[inline]
     pub(super) fn unit_ray(&self, origin: DVec3, dir: DVec3) -> UnitRay {
-        let (ia, ib) = (1.0 / self.a, 1.0 / self.b);
+        let [ia, ib] = self.inverse;
         UnitRay {
             x: origin.x * ia,
             y: origin.y * ib,
@@ -60,9 +64,17 @@ impl Section {
         }
     }
 
+    /// A point in the unit-circle frame.
+    #[inline]
+    pub(super) fn unit_point(&self, p: DVec3) -> DVec3 {
+        DVec3::new(p.x * self.inverse[0], p.y * self.inverse[1], p.z)
+    }
+
     /// The unit normal that belongs to a gradient in the unit-circle frame, turned against `dir`.
     pub(super) fn normal_against(&self, gradient: DVec3, dir: DVec3) -> DVec3 {
-        let n = DVec3::new(gradient.x / self.a, gradient.y / self.b, gradient.z).normalize();
+        let [ia, ib] = self.inverse;
+        let n = DVec3::new(gradient.x * ia, gradient.y * ib, gradient.z);
+        let n = n * (1.0 / n.length());
         if n.dot(dir) > 0.0 { -n } else { n }
     }
 
@@ -114,6 +126,7 @@ impl Section {
 
 impl UnitRay {
     /// Coefficients of `rho^2 = c + 2 b t + a t^2`, as `[a, b, c]`.
+    #[inline]
     pub(super) fn radius_squared(&self) -> [f64; 3] {
         [
             self.dx * self.dx + self.dy * self.dy,
@@ -124,6 +137,7 @@ impl UnitRay {
 
     /// Where the ray's line is inside the circle of radius `r`: `(enter, leave)`. An axial ray inside
     /// stays for ever.
+    #[inline]
     pub(super) fn inside_circle(&self, r: f64) -> Option<(f64, f64)> {
         let [a, b, c] = self.radius_squared();
         let c = c - r * r;
@@ -140,12 +154,13 @@ impl UnitRay {
             let q = -b - root;
             (q / a, c / q)
         } else {
-            let q = -b + root;
+            let q = root - b;
             (c / q, q / a)
         })
     }
 
     /// The point at `t`.
+    #[inline]
     pub(super) fn at(&self, t: f64) -> DVec3 {
         DVec3::new(
             self.x + t * self.dx,
@@ -153,4 +168,17 @@ impl UnitRay {
             self.z + t * self.dz,
         )
     }
+}
+
+/// `floor` in two instructions: the one of the standard library is a call on older processors.
+#[inline]
+pub(super) fn floor(x: f64) -> f64 {
+    let whole = x as i64 as f64;
+    if whole > x { whole - 1.0 } else { whole }
+}
+
+/// The multiple of `period` that brings `z` nearest to it: `period * round(z / period)`.
+#[inline]
+pub(super) fn nearest_period(z: f64, period: f64) -> f64 {
+    period * floor(z / period + 0.5)
 }

@@ -1,8 +1,8 @@
 //! The outer boundary: a bare elliptical cylinder or one with scales.
 
 use super::march::{March, Side, StartOn};
-use super::scales::{Cell, Scales};
-use super::section::UnitRay;
+use super::scales::{Cell, Scales, at};
+use super::section::{UnitRay, nearest_period};
 use glam::DVec3;
 
 /// The outer boundary in the unit-circle frame.
@@ -173,18 +173,19 @@ impl Scales {
     /// The periodic image of a strip that a point on its face or its upper end belongs to.
     fn image_near(&self, sector: u16, strip: u16, p: DVec3, face: bool) -> Cell {
         let (sector, strip) = (usize::from(sector), usize::from(strip));
-        let u = self.across(sector, p.x, p.y);
-        let end = self.stack(sector)[strip].end;
-        let mut z = end[0] + u * (end[1] - end[0]);
-        if face {
-            let begin = self.begin(sector, strip);
-            z = 0.5 * (z + begin[0] + u * (begin[1] - begin[0]));
-        }
-        Cell {
+        let mut cell = Cell {
             sector,
             strip,
-            shift: self.period * ((p.z - z) / self.period).round(),
+            shift: 0.0,
+        };
+        let u = self.across(sector, p.x, p.y);
+        let s = self.strip(cell);
+        let mut z = at(s.end, u);
+        if face {
+            z = 0.5 * (z + at(s.begin, u));
         }
+        cell.shift = nearest_period(p.z - z, self.period);
+        cell
     }
 
     fn leave<T>(
@@ -194,13 +195,15 @@ impl Scales {
         core: impl FnOnce(f64, f64) -> Option<T>,
     ) -> Inward<T> {
         let inner = ray.inside_circle(self.rho_min).filter(|&(_, t1)| t1 > 0.0);
-        let outer = ray.inside_circle(self.rho_max);
-        let leave = outer.map_or(0.0, |(_, t1)| t1.max(0.0));
+        let leave = || {
+            let outer = ray.inside_circle(self.rho_max);
+            outer.map_or(0.0, |(_, t1)| t1.max(0.0))
+        };
         let [.., c] = ray.radius_squared();
         // In the shell first, unless the ray starts within all scales.
         if c >= self.rho_min * self.rho_min || inner.is_none() {
             let (cell, on) = self.start(ray, 0.0, from, Side::Inside);
-            let limit = inner.map_or(leave, |(t0, _)| t0.max(0.0));
+            let limit = inner.map_or_else(leave, |(t0, _)| t0.max(0.0));
             match self.march(ray, 0.0, cell, Side::Inside, on, limit) {
                 March::Through => {}
                 march => return outer_hit(march).map_or(Inward::Lost, Inward::Outer),
@@ -216,7 +219,14 @@ impl Scales {
             return Inward::Lost;
         }
         let cell = self.locate(ray.at(t1));
-        let march = self.march(ray, t1, cell, Side::Inside, StartOn::Nothing, leave.max(t1));
+        let march = self.march(
+            ray,
+            t1,
+            cell,
+            Side::Inside,
+            StartOn::Nothing,
+            leave().max(t1),
+        );
         outer_hit(march).map_or(Inward::Lost, Inward::Outer)
     }
 }

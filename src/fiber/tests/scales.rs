@@ -33,8 +33,8 @@ fn height_closes_round_the_fiber_and_along_the_period() {
         for i in 0..4000 {
             let mut rng = Rng::new(3, i);
             let z = 300.0 * (rng.uniform() - 0.5);
-            let sector = (rng.bits() as usize) % scales.planes.len();
-            let plane = scales.planes[sector];
+            let sector = (rng.bits() as usize) % scales.sectors.len();
+            let plane = scales.sectors[sector].planes[0];
             let on = |e: f64| DVec3::new(plane.cos - e * plane.sin, plane.sin + e * plane.cos, z);
             // A margin exactly here steps; anything else must agree from both sides.
             torn += u32::from((radius(on(1e-9)) - radius(on(-1e-9))).abs() > 1e-7);

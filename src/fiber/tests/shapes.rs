@@ -98,7 +98,7 @@ fn froth_holds_the_asked_share_of_air_and_keeps_its_distance() {
 fn chords_between_the_voids_follow_cauchy() {
     let mut s = super::bear_guard();
     s.aspect = 1.0;
-    s.medulla.pigment = 0.5;
+    s.medulla.pigment = 2.0;
     let fiber = Fiber::build(&s, 4).unwrap();
     let Voids::Froth(froth) = &fiber.medulla.voids else {
         panic!("no froth")
@@ -118,16 +118,15 @@ fn chords_between_the_voids_follow_cauchy() {
         // Uniform on the outline with a cosine law about its normal: uniform lines.
         let (u, v) = (rng.uniform(), std::f64::consts::TAU * rng.uniform());
         let dir = DVec3::new(-(1.0 - u).sqrt(), u.sqrt() * v.cos(), u.sqrt() * v.sin());
-        let mut p = DVec3::new(radius + 1.0, 0.0, period * rng.uniform());
-        p = p - DVec3::X + dir * -1e-3;
-        let (mut region, mut from) = (Region::Cortex, None);
-        loop {
+        let mut p = DVec3::new(radius, 0.0, period * rng.uniform()) + dir * 1e-9;
+        let (mut region, mut from) = (fiber.region_at(p), None);
+        while region != Region::Outside {
             let hit = fiber.next_hit(p, dir, region, from).unwrap();
-            if region == Region::Medulla {
-                sum += hit.t;
-                count += 1;
-            } else if region == Region::Cortex && hit.to != Region::Medulla {
-                break;
+            if region == Region::Cortex {
+                // The pigment of the walls is twice the cortex's: what exceeds t lies in the medulla.
+                let chord = hit.pigment_um - hit.t;
+                sum += chord;
+                count += u32::from(chord > 0.0);
             }
             p += hit.t * dir;
             region = hit.to;
