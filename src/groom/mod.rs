@@ -2,6 +2,7 @@
 
 mod clump;
 mod error;
+mod field;
 mod follicle;
 mod plan;
 mod strand;
@@ -14,6 +15,7 @@ pub use plan::{DEFAULT_STRANDS, MAX_CLASSES, MAX_STRANDS};
 use crate::progress::{Cancel, Progress};
 use crate::skin::Skin;
 use crate::species::Species;
+use field::Field;
 use follicle::Surface;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -98,6 +100,7 @@ pub fn grow(
         .collect();
     let scattered = scattered?;
 
+    let field = (skin.gravity == 0.0).then(|| Field::new(skin));
     let mut groom = Groom {
         classes: species.classes.iter().map(|c| c.name.clone()).collect(),
         width_scale: plan.iter().map(|c| c.width_scale as f32).collect(),
@@ -110,6 +113,7 @@ pub fn grow(
         let grower = Grower::new(
             &species.classes[class].groom,
             skin,
+            field.as_ref(),
             settings.seed,
             width_scale,
         );

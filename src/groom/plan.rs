@@ -21,10 +21,12 @@ const CLASS_FLATTENING: f64 = 0.5;
 /// Layers of hair of one class, counted along the skin's normal, beyond which a coat looks no
 /// denser: what shines through is `exp(-layers)`. Fewer and the skin shows, more and the widened
 /// hairs look like straw.
-const OPAQUE_LAYERS: f64 = 2.5;
+const OPAQUE_LAYERS: f64 = 3.5;
 
-/// Widest a hair may get by compensation. At 8 a guard hair of 75 um is 0.6 mm: beyond, straw.
-const MAX_WIDTH_SCALE: f64 = 6.0;
+/// Limits of compensation: hair wider than this, micrometers, looks like straw, and fine hair that
+/// is scaled beyond this factor like felt.
+const MAX_WIDTH_UM: f64 = 280.0;
+const MAX_WIDTH_SCALE: f64 = 10.0;
 
 /// What is grown of one class.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +83,12 @@ pub(super) fn plan(
             ClassPlan {
                 strands: counts[i],
                 natural: natural[i],
-                width_scale: width_scale(natural[i], counts[i], hair_area / area_m2),
+                width_scale: width_scale(
+                    natural[i],
+                    counts[i],
+                    hair_area / area_m2,
+                    groom.diameter_um,
+                ),
             }
         })
         .collect())
@@ -158,14 +165,15 @@ fn round_down_but_last(shares: impl Iterator<Item = f64>, total: usize) -> Vec<u
 }
 
 /// Factor on the diameter that keeps a coat of `grown` instead of `natural` hairs as opaque as it
-/// needs to be. `layer` is the share of the skin's area that one hair covers.
+/// needs to be. `layer` is the share of the skin's area that one hair of `diameter_um` covers.
 ///
-/// Widening by the full ratio would make a fox's guard hair a centimeter wide. But a coat of sixty
+/// Widening by the full ratio would make a fox's guard hair millimeters wide. But a coat of sixty
 /// layers looks no denser than one of three, so only [`OPAQUE_LAYERS`] are kept.
-fn width_scale(natural: f64, grown: usize, layer: f64) -> f64 {
+fn width_scale(natural: f64, grown: usize, layer: f64, diameter_um: f64) -> f64 {
     let grown = grown.max(1) as f64;
     let needed = (natural * layer).min(OPAQUE_LAYERS);
     (needed / (grown * layer))
+        .min(MAX_WIDTH_UM / diameter_um)
         .clamp(1.0, MAX_WIDTH_SCALE)
         .min((natural / grown).max(1.0))
 }
@@ -192,14 +200,15 @@ mod tests {
     #[test]
     fn widths_compensate_only_as_far_as_needed() {
         // 10 natural layers, all there: natural width.
-        assert_eq!(width_scale(1e6, 1_000_000, 1e-5), 1.0);
+        assert_eq!(width_scale(1e6, 1_000_000, 1e-5, 20.0), 1.0);
         // Half of 10 layers is still opaque.
-        assert_eq!(width_scale(1e6, 500_000, 1e-5), 1.0);
-        // A tenth is 1 layer: 2.5 are needed.
-        assert!((width_scale(1e6, 100_000, 1e-5) - 2.5).abs() < 1e-12);
+        assert_eq!(width_scale(1e6, 500_000, 1e-5, 20.0), 1.0);
+        // A tenth is 1 layer: 3.5 are needed.
+        assert!((width_scale(1e6, 100_000, 1e-5, 20.0) - 3.5).abs() < 1e-12);
         // A sparse coat (0.1 layers) keeps its covered area exactly: linear.
-        assert!((width_scale(1e4, 5_000, 1e-5) - 2.0).abs() < 1e-12);
-        // Previews are capped.
-        assert_eq!(width_scale(1e6, 100, 1e-5), MAX_WIDTH_SCALE);
+        assert!((width_scale(1e4, 5_000, 1e-5, 20.0) - 2.0).abs() < 1e-12);
+        // Previews are capped, thick hair sooner.
+        assert_eq!(width_scale(1e6, 100, 1e-5, 20.0), MAX_WIDTH_SCALE);
+        assert_eq!(width_scale(1e6, 100, 1e-5, 140.0), 2.0);
     }
 }

@@ -1,6 +1,7 @@
 //! The shape of one hair.
 
 use super::clump::Clumps;
+use super::field::Field;
 use super::follicle::Root;
 use crate::sampling::{Rng, hash64};
 use crate::skin::Skin;
@@ -16,8 +17,13 @@ pub(super) const CLASS_SHIFT: u32 = 28;
 const POINTS: usize = 8;
 const POINTS_LONG: usize = 12;
 /// From this length hair is long, millimeters.
-const LONG_MM: f64 = 120.0;
+const LONG_MM: f64 = 100.0;
 
+/// How closely the lay keeps to the shape of the skin under it: 0 lets fur stand off every bulge,
+/// 1 glues it on.
+const FOLLOW: f32 = 0.7;
+/// Height over length below which hair is lifted: clumping and neighbors push it no deeper.
+const LEAST_HEIGHT: f32 = 0.04;
 /// Lowest angle between skin and hair, radians: lower and strands dive into curved skin.
 const LOWEST: f32 = 0.07;
 /// How far the lay of fur turns downhill from root to tip; more reads as wet, none as brushed.
@@ -28,6 +34,10 @@ const HANG: f32 = 0.012;
 const DRIFT_SCALE: f64 = 0.03;
 const DRIFT_TURN: f32 = 0.16;
 const DRIFT_LENGTH: f32 = 0.08;
+/// Clumps gather into locks of this many times their size, pulled together by this share of the
+/// clump's pull: the tufts that a coat shows from afar.
+const LOCK: f32 = 7.0;
+const LOCK_PULL: f32 = 0.7;
 /// How far the hairs of a tuft lean together, radians, and differ in length from the next tuft.
 const TUFT_LEAN: f32 = 0.14;
 const TUFT_LENGTH: f32 = 0.07;
@@ -37,6 +47,10 @@ const CLUMP_RATE: f32 = 0.4;
 const POINTS_PER_WAVE: f32 = 3.0;
 /// Largest crimp amplitude relative to length.
 const CRIMP_LIMIT: f32 = 0.06;
+/// Hair of a length factor f is finer by f to this power.
+const FINER: f32 = 0.2;
+/// Hair pressed to the ground stays this far above it, meters.
+const GROUND_GAP: f32 = 4e-4;
 /// Exponent of the tip's taper, and the width left at the very tip.
 const TAPER: f64 = 1.5;
 const TIP: f64 = 0.08;
@@ -45,9 +59,12 @@ const TIP: f64 = 0.08;
 pub(super) struct Grower<'a> {
     class: &'a ClassGroom,
     gravity: f32,
+    floor: f32,
+    field: Option<&'a Field>,
     seed: u64,
     drift: OpenSimplex,
     clumps: Clumps,
+    locks: Clumps,
     /// Position along the hair of each control point, 0 root .. 1 tip.
     zetas: Vec<f32>,
     profile: Vec<f32>,
@@ -64,7 +81,14 @@ struct Luck {
 }
 
 impl<'a> Grower<'a> {
-    pub(super) fn new(class: &'a ClassGroom, skin: &Skin, seed: u64, width_scale: f64) -> Self {
+    /// * `field`: the space above the skin, `None` for hair that hangs free of it.
+    pub(super) fn new(
+        class: &'a ClassGroom,
+        skin: &Skin,
+        field: Option<&'a Field>,
+        seed: u64,
+        width_scale: f64,
+    ) -> Self {
         let points = if class.length_mm > LONG_MM {
             POINTS_LONG
         } else {
@@ -79,14 +103,21 @@ impl<'a> Grower<'a> {
         let profile = (zetas.iter())
             .map(|&zeta| (widest * profile(class, f64::from(zeta))) as f32)
             .collect();
+        let size = (class.clump_mm * 1e-3).max(1e-4) as f32;
         Self {
             class,
             gravity: skin.gravity.clamp(0.0, 1.0),
+            floor: skin.floor.unwrap_or(f32::NEG_INFINITY),
+            field,
             seed,
             drift: OpenSimplex::new(hash64(seed ^ 0x6472_6966) as u32),
             clumps: Clumps {
-                size: (class.clump_mm * 1e-3).max(1e-4) as f32,
+                size,
                 seed: hash64(seed ^ 0x636c_756d),
+            },
+            locks: Clumps {
+                size: LOCK * size,
+                seed: hash64(seed ^ 0x6c6f_636b),
             },
             zetas,
             profile,
@@ -123,6 +154,7 @@ impl<'a> Grower<'a> {
         let class = self.class;
         let luck = self.luck(id);
         let clump = self.clumps.at(root.position);
+        let lock = self.locks.at(root.position);
         let drift = |offset: f64| {
             let p = root.position.as_dvec3() / DRIFT_SCALE + offset;
             self.drift.get(p.to_array()) as f32
@@ -132,9 +164,9 @@ impl<'a> Grower<'a> {
             * root.length
             * luck.length
             * (1.0 + DRIFT_LENGTH * drift(0.0))
-            * (1.0 + TUFT_LENGTH * clump.random[0]);
-        let shared_turn = DRIFT_TURN * drift(40.0) + TUFT_LEAN * clump.random[1];
-        let shared_lift = 0.5 * TUFT_LEAN * clump.random[2];
+            * (1.0 + TUFT_LENGTH * lock.random[0]);
+        let shared_turn = DRIFT_TURN * drift(40.0) + TUFT_LEAN * lock.random[1];
+        let shared_lift = 0.5 * TUFT_LEAN * lock.random[2];
 
         // Two curves: the hair by itself, and what it would be without straying from its tuft.
         let emergence = class.emergence_deg.to_radians() as f32 + shared_lift;
@@ -144,39 +176,70 @@ impl<'a> Grower<'a> {
         };
         let own = lean(shared_turn + luck.turn, luck.lift);
         let tuft = lean(shared_turn, 0.0);
-        let to_center = clump.center - root.position;
-        let to_center = to_center - root.normal * to_center.dot(root.normal);
-        let pull = (class.clump as f32 * (1.0 + 0.4 * clump.random[3])).clamp(0.0, 1.0);
+        let tangential = |v: Vec3| v - root.normal * v.dot(root.normal);
+        let to_clump = tangential(clump.center - root.position);
+        let to_lock = tangential(lock.center - root.position);
+        // A shorter hair has less way to its neighbors.
+        let share = class.clump as f32 * root.length.min(1.0);
+        let pull = (share * (1.0 + 0.4 * clump.random[3])).clamp(0.0, 1.0);
+        let lock_pull = (LOCK_PULL * share * (1.0 + 0.4 * lock.random[3])).clamp(0.0, 1.0);
 
         let (mut hair, mut center) = (root.position, root.position);
         let crimp = Crimp::new(class, length, length / (self.points() - 1) as f32, &luck);
         points[0] = root.position;
         for k in 0..self.points() - 1 {
             let (from, zeta) = (self.zetas[k], self.zetas[k + 1]);
-            let (middle, step) = (0.5 * (from + zeta), length * (zeta - from));
-            hair += step * self.direction(root, &own, middle, length);
-            center += step * self.direction(root, &tuft, middle, length);
-            let toward = pull * clump_weight(zeta) * (center + to_center - hair);
-            points[k + 1] = hair + toward + crimp.offset(&own, root, zeta * length);
+            hair = self.step(hair, root, &own, [from, zeta], length);
+            center = self.step(center, root, &tuft, [from, zeta], length);
+            let weight = clump_weight(zeta);
+            let toward = pull * weight * (center + to_clump - hair) + lock_pull * weight * to_lock;
+            let point = hair + toward + crimp.offset(&own, root, zeta * length);
+            points[k + 1] = self.lift(point, root, zeta * length);
         }
-        if self.gravity == 0.0 {
-            keep_above(root, points, length);
-        }
+        // Finer where it is shorter, as on faces and paws.
+        let finer = root.length.clamp(0.05, 1.0).powf(FINER);
         for (width, profile) in widths.iter_mut().zip(&self.profile) {
-            *width = profile * luck.width;
+            *width = profile * luck.width * finer;
         }
     }
 
-    /// Direction at `zeta` along the hair: it leaves at the emergence angle and bends toward the
-    /// lay, which turns downhill a little; hanging hair turns straight down.
-    fn direction(&self, root: &Root, lean: &Lean, zeta: f32, length: f32) -> Vec3 {
+    /// Goes from `from` one segment on. The hair leaves at the emergence angle and bends toward the
+    /// lay, which follows the skin below and turns downhill a little; hanging hair turns straight
+    /// down.
+    fn step(&self, from: Vec3, root: &Root, lean: &Lean, zetas: [f32; 2], length: f32) -> Vec3 {
+        let middle = 0.5 * (zetas[0] + zetas[1]);
         let bend = self.class.bend_deg.to_radians() as f32;
-        let angle = (lean.emergence - bend * zeta).max(LOWEST);
-        let downhill = root.normal * root.normal.y - Vec3::Y;
-        let lay = (lean.combing + SAG * zeta * downhill).normalize_or(lean.combing);
-        let direction = lay * angle.cos() + root.normal * angle.sin();
-        let hang = self.gravity * (1.0 - (-(zeta * length / HANG).powi(2)).exp());
-        direction.lerp(Vec3::NEG_Y, hang).normalize_or(direction)
+        let angle = (lean.emergence - bend * middle).max(LOWEST);
+        let (mut normal, mut combing) = (root.normal, lean.combing);
+        let field = self.field.filter(|field| length > 2.0 * field.cell());
+        if let Some(above) = field.and_then(|field| field.above(from))
+            // Opposite limbs are no guide.
+            && above.normal.dot(root.normal) > 0.2
+        {
+            normal = normal.lerp(above.normal, FOLLOW).normalize_or(normal);
+            combing = Quat::from_rotation_arc(root.normal, normal) * combing;
+        }
+        let downhill = normal * normal.y - Vec3::Y;
+        let lay = (combing + SAG * middle * downhill).normalize_or(combing);
+        let direction = lay * angle.cos() + normal * angle.sin();
+        let hang = self.gravity * (1.0 - (-(middle * length / HANG).powi(2)).exp());
+        let direction = direction.lerp(Vec3::NEG_Y, hang).normalize_or(direction);
+        from + direction * (length * (zetas[1] - zetas[0]))
+    }
+
+    /// A control point, lifted if it is below the skin or the ground.
+    fn lift(&self, mut point: Vec3, root: &Root, along: f32) -> Vec3 {
+        if self.gravity == 0.0 {
+            let least = LEAST_HEIGHT * along;
+            let below = self.field.and_then(|field| field.above(point));
+            let (normal, height) = match below {
+                Some(above) => (above.normal, above.height),
+                None => (root.normal, (point - root.position).dot(root.normal)),
+            };
+            point += normal * (least - height).clamp(0.0, 0.5 * along);
+        }
+        point.y = point.y.max(self.floor + GROUND_GAP);
+        point
     }
 }
 
@@ -229,17 +292,6 @@ impl Crimp {
 fn clump_weight(zeta: f32) -> f32 {
     let inverse = 1.0 - zeta;
     zeta * (1.0 - CLUMP_RATE) + CLUMP_RATE * (1.0 - inverse * inverse)
-}
-
-/// Lifts control points that clumping or crimp pushed below the skin, seen as the root's tangent
-/// plane.
-fn keep_above(root: &Root, points: &mut [Vec3], length: f32) {
-    let segments = (points.len() - 1) as f32;
-    for (k, point) in points.iter_mut().enumerate().skip(1) {
-        let least = 0.02 * length * k as f32 / segments;
-        let height = (*point - root.position).dot(root.normal);
-        *point += root.normal * (least - height).max(0.0);
-    }
 }
 
 /// Diameter at `zeta` over the widest: a thin stalk, the shield, a tapering tip.

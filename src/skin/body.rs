@@ -88,7 +88,7 @@ impl Vertex {
 /// Short fur stands denser, or the skin would show between hairs of a few millimeters: below this
 /// length factor as much as hairs are shorter, up to a limit that leaves strands for the trunk.
 const SHORT: f32 = 0.6;
-const DENSEST: f32 = 3.0;
+const DENSEST: f32 = 5.0;
 
 fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
     let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
@@ -134,122 +134,32 @@ fn egg(center: Vec3, radii: Vec3, pitch_deg: f32, melt: f32, lay: Vec3, length: 
     }
 }
 
+// One part a line: the tables are read and tuned as tables.
+#[rustfmt::skip]
 fn trunk() -> Group {
-    let back = Vec3::new(-1.0, -0.12, 0.0);
-    let flank = Vec3::new(-1.0, -0.55, 0.0);
-    let paw = Vec3::new(1.0, -0.2, 0.0);
+    let v = Vec3::new;
+    let (back, flank, paw) = (v(-1.0, -0.12, 0.0), v(-1.0, -0.55, 0.0), v(1.0, -0.2, 0.0));
     let parts = vec![
         // Chest, belly, loin, rump.
-        egg(
-            cm(8.0, 11.8, 0.0),
-            cm(10.5, 8.0, 6.3),
-            -12.0,
-            0.0,
-            flank,
-            0.95,
-        ),
-        egg(
-            cm(-6.0, 11.0, 0.0),
-            cm(13.0, 6.9, 6.3),
-            0.0,
-            6.0,
-            flank,
-            1.0,
-        ),
-        cone(
-            cm(4.0, 14.2, 0.0),
-            5.0,
-            cm(-15.0, 12.8, 0.0),
-            5.4,
-            4.0,
-            back,
-            0.9,
-        ),
-        egg(
-            cm(-17.5, 11.2, 0.0),
-            cm(8.6, 7.6, 6.9),
-            8.0,
-            5.0,
-            back,
-            0.95,
-        ),
+        egg(cm(8.0, 11.8, 0.0), cm(10.5, 8.0, 6.3), -12.0, 0.0, flank, 0.95),
+        egg(cm(-6.0, 11.0, 0.0), cm(13.0, 6.9, 6.3), 0.0, 6.0, flank, 1.0),
+        cone(cm(4.0, 14.2, 0.0), 5.0, cm(-15.0, 12.8, 0.0), 5.4, 4.0, back, 0.9),
+        egg(cm(-17.5, 11.2, 0.0), cm(8.6, 7.6, 6.9), 8.0, 5.0, back, 0.95),
         // Breast, with the bib of long fur.
-        egg(
-            cm(13.6, 12.2, 0.0),
-            cm(5.0, 7.2, 5.2),
-            10.0,
-            4.0,
-            Vec3::new(0.35, -1.0, 0.1),
-            1.0,
-        ),
+        egg(cm(13.6, 12.2, 0.0), cm(5.0, 7.2, 5.2), 10.0, 4.0, v(0.35, -1.0, 0.1), 1.0),
         // Shoulder blade and upper arm.
-        cone(
-            cm(10.5, 15.0, 4.3),
-            4.4,
-            cm(8.0, 5.6, 6.4),
-            2.9,
-            3.0,
-            Vec3::new(-0.55, -1.0, 0.2),
-            0.7,
-        ),
-        // Forearm, wrist, paw.
-        cone(
-            cm(8.0, 4.5, 6.4),
-            2.8,
-            cm(22.0, 2.3, 5.2),
-            1.7,
-            2.2,
-            Vec3::new(1.0, -0.15, 0.0),
-            0.28,
-        ),
-        egg(cm(25.2, 1.9, 5.1), cm(3.6, 1.75, 2.15), 0.0, 1.6, paw, 0.13),
+        cone(cm(10.5, 15.0, 4.3), 4.4, cm(8.0, 5.6, 6.4), 2.9, 3.0, v(-0.55, -1.0, 0.2), 0.7),
+        // Forearm, paw.
+        cone(cm(8.0, 4.5, 6.4), 2.8, cm(22.0, 2.3, 5.2), 1.7, 2.2, v(1.0, -0.15, 0.0), 0.32),
+        egg(cm(25.2, 1.9, 5.1), cm(3.6, 1.75, 2.15), 0.0, 1.6, paw, 0.18),
         // Thigh, shank, hind foot.
-        egg(
-            cm(-15.5, 9.0, 5.8),
-            cm(8.6, 7.4, 4.0),
-            18.0,
-            3.0,
-            Vec3::new(-0.75, -0.8, 0.0),
-            0.8,
-        ),
-        cone(
-            cm(-8.5, 6.4, 8.2),
-            3.2,
-            cm(-15.0, 3.2, 8.8),
-            2.2,
-            2.4,
-            Vec3::new(-0.5, -1.0, 0.0),
-            0.5,
-        ),
-        cone(
-            cm(-14.5, 2.0, 9.2),
-            1.9,
-            cm(-4.0, 1.7, 9.6),
-            1.6,
-            1.6,
-            Vec3::new(1.0, -0.1, 0.0),
-            0.2,
-        ),
-        egg(cm(-2.0, 1.8, 9.7), cm(3.4, 1.6, 2.0), 0.0, 1.2, paw, 0.13),
+        egg(cm(-15.5, 9.0, 5.8), cm(8.6, 7.4, 4.0), 18.0, 3.0, v(-0.75, -0.8, 0.0), 0.8),
+        cone(cm(-8.5, 6.4, 8.2), 3.2, cm(-15.0, 3.2, 8.8), 2.2, 2.4, v(-0.5, -1.0, 0.0), 0.5),
+        cone(cm(-14.5, 2.0, 9.2), 1.9, cm(-4.0, 1.7, 9.6), 1.6, 1.6, v(1.0, -0.1, 0.0), 0.25),
+        egg(cm(-2.0, 1.8, 9.7), cm(3.4, 1.6, 2.0), 0.0, 1.2, paw, 0.18),
         // Neck: nape and throat.
-        cone(
-            cm(10.5, 15.5, 0.0),
-            5.4,
-            cm(19.2, 25.5, 0.0),
-            3.6,
-            4.5,
-            Vec3::new(-0.6, -1.0, 0.0),
-            0.85,
-        ),
-        cone(
-            cm(14.0, 14.5, 0.0),
-            4.8,
-            cm(21.0, 24.5, 0.0),
-            3.0,
-            3.5,
-            Vec3::new(0.05, -1.0, 0.0),
-            0.95,
-        ),
+        cone(cm(10.5, 15.5, 0.0), 5.4, cm(19.2, 25.5, 0.0), 3.6, 4.5, v(-0.6, -1.0, 0.0), 0.85),
+        cone(cm(14.0, 14.5, 0.0), 4.8, cm(21.0, 24.5, 0.0), 3.0, 3.5, v(0.05, -1.0, 0.0), 0.95),
     ];
     Group {
         parts,
@@ -275,64 +185,32 @@ fn head_axes() -> Mat3 {
 }
 
 /// The head in its own frame: x to the nose.
+#[rustfmt::skip]
 fn head() -> Group {
-    let back = Vec3::new(-1.0, 0.15, 0.0);
-    let cheek = Vec3::new(-0.75, -0.35, 0.7);
+    let v = Vec3::new;
+    let (back, cheek) = (v(-1.0, 0.15, 0.0), v(-0.75, -0.35, 0.7));
     let parts = vec![
-        // Cranium, brow.
-        egg(cm(-0.6, 0.8, 0.0), cm(5.2, 3.9, 4.1), 0.0, 0.0, back, 0.26),
-        egg(cm(2.2, 1.1, 0.0), cm(3.3, 2.5, 2.9), -18.0, 1.6, back, 0.13),
-        // Ridges above the eyes.
-        cone(
-            cm(2.4, 2.0, 2.3),
-            0.8,
-            cm(4.6, 1.35, 1.45),
-            0.6,
-            1.4,
-            back,
-            0.09,
-        ),
+        // Cranium, brow, ridges above the eyes.
+        egg(cm(-0.6, 0.8, 0.0), cm(5.2, 3.9, 4.1), 0.0, 0.0, back, 0.32),
+        egg(cm(2.2, 1.1, 0.0), cm(3.3, 2.5, 2.9), -18.0, 1.6, back, 0.19),
+        cone(cm(2.4, 2.0, 2.3), 0.8, cm(4.6, 1.35, 1.45), 0.6, 1.4, back, 0.12),
         // Cheeks: wide, with the long hair at the sides that makes a fox's face a triangle.
-        egg(cm(-0.4, -1.4, 2.6), cm(3.4, 2.4, 2.2), 0.0, 1.8, cheek, 0.5),
+        egg(cm(-0.4, -1.4, 2.6), cm(3.4, 2.4, 2.2), 0.0, 1.8, cheek, 0.55),
         // Muzzle, nose bridge, lower jaw.
-        cone(
-            cm(3.0, -0.9, 0.0),
-            2.3,
-            cm(9.2, -1.9, 0.0),
-            1.0,
-            2.0,
-            back,
-            0.065,
-        ),
-        cone(
-            cm(3.5, 0.1, 0.0),
-            1.3,
-            cm(9.4, -1.35, 0.0),
-            0.72,
-            1.0,
-            back,
-            0.06,
-        ),
-        cone(
-            cm(0.5, -2.6, 0.0),
-            1.9,
-            cm(7.8, -2.75, 0.0),
-            0.75,
-            1.2,
-            Vec3::new(-1.0, -0.2, 0.0),
-            0.1,
-        ),
+        cone(cm(3.0, -0.9, 0.0), 2.3, cm(9.2, -1.9, 0.0), 1.0, 2.0, back, 0.10),
+        cone(cm(3.5, 0.1, 0.0), 1.3, cm(9.4, -1.35, 0.0), 0.72, 1.0, back, 0.09),
+        cone(cm(0.5, -2.6, 0.0), 1.9, cm(7.8, -2.75, 0.0), 0.75, 1.2, v(-1.0, -0.2, 0.0), 0.14),
         // Ears.
         Part {
             shape: Shape::Ear {
                 base: cm(-1.6, 2.8, 3.15),
                 tip: cm(-2.3, 10.0, 5.0),
-                facing: Vec3::new(1.0, 0.1, 0.45),
+                facing: v(1.0, 0.1, 0.45),
                 radius: 0.0285,
             },
             melt: 0.012,
-            lay: Vec3::new(-0.1, 1.0, 0.25).normalize(),
-            length: 0.12,
+            lay: v(-0.1, 1.0, 0.25).normalize(),
+            length: 0.17,
         },
     ];
     Group {
