@@ -1,0 +1,61 @@
+//! The white furnace: fur that absorbs nothing, in a world that is white all over, cannot be seen.
+//! It holds only if the bake loses no light, tables and sampling agree, frames are right and a ray
+//! leaves the strand that it was scattered by.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use vair::assembly;
+use vair::bake::Settings;
+use vair::color::Rgb;
+use vair::groom::{self, GroomSettings};
+use vair::progress::{Cancel, Silent};
+use vair::render::{RenderJob, Sampler};
+use vair::scene::{Backdrop, Environment, Scene, SceneParts, View};
+use vair::{skin, species};
+
+/// Mean radiance over a small picture of clear fur on nothing, its standard error, and the share of
+/// the picture that is fur.
+fn furnace(name: &str, overrides: &[&str], sampler: Sampler) -> (Rgb, f64, f64) {
+    let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
+    let species = species::load(name, &overrides).unwrap();
+    let bake = Settings { photons: 300_000, ..Settings::cone() };
+    let cancel = Cancel::default();
+    let materials = assembly::materials(&species, &bake, None, &Silent, &cancel).unwrap();
+    let ball = skin::load("ball").unwrap();
+    let settings = GroomSettings { strands: Some(4000), seed: 2 };
+    let groom = groom::grow(&ball, &species, &settings, &Silent, &cancel).unwrap();
+    let scene = Scene::build(SceneParts {
+        groom: &groom,
+        materials,
+        skin: None,
+        environment: Environment::white(),
+        backdrop: Backdrop::Environment,
+        ground: None,
+        view: View::default(),
+    })
+    .unwrap();
+    let job = RenderJob { resolution: [40, 40], spp: 64, sampler, ..RenderJob::default() };
+    let film = job.run(&scene, &Silent, &cancel).unwrap();
+    let n = film.pixels.len() as f32;
+    let mean = film.pixels.iter().map(|p| p.radiance).sum::<Rgb>() / n;
+    let variance: f64 = film.pixels.iter().map(|p| f64::from(p.variance)).sum();
+    let fur = film.pixels.iter().map(|p| f64::from(p.alpha)).sum::<f64>() / f64::from(n);
+    (mean, variance.sqrt() / f64::from(n), fur)
+}
+
+#[test]
+fn clear_fur_in_a_white_world_is_invisible() {
+    for sampler in [Sampler::Qsir, Sampler::Bsdf, Sampler::Mis] {
+        let (mean, error, fur) = furnace("polar-bear", &[], sampler);
+        assert!(fur > 0.15, "there is fur: {fur}");
+        // Background pixels are 1 exactly; the bound is on what the fur itself is off.
+        let off = f64::from((mean - 1.0).abs().max_element()) / fur;
+        assert!(off < 0.005 + 3.0 * error / fur, "{sampler:?}: {mean} +- {error}");
+    }
+}
+
+#[test]
+fn pigment_is_seen_in_the_furnace() {
+    let (mean, _, _) = furnace("polar-bear", &["guard.pigment.0.eumelanin=0.2"], Sampler::Qsir);
+    assert!(mean.x < 0.995 && mean.z < mean.x, "a little eumelanin must show: {mean}");
+}
