@@ -13,6 +13,8 @@ pub(super) enum Purpose {
     Light = 3,
     /// Choice among candidates, and roulette.
     Choice = 4,
+    /// The direction in which the path goes on.
+    Continue = 5,
 }
 
 /// The numbers of sample `index` of one pixel.

@@ -2,7 +2,7 @@
 
 use super::Sampler;
 use super::draws::{Draws, Purpose};
-use super::resample::{Target, candidates, resample};
+use super::resample::{Plan, Target, resample};
 use super::scatter::{Direction, Scatter};
 use crate::color::Rgb;
 use crate::scene::{Camera, Hit, Scene};
@@ -110,9 +110,7 @@ impl Integrator<'_> {
         let mut next;
         let mut scatter = first;
         for depth in 0..FAR_CAP {
-            if matches!(self.sampler, Sampler::Env | Sampler::Mis) {
-                sum += throughput * self.direct(scatter, draws, depth, out);
-            }
+            sum += throughput * self.direct(scatter, draws, depth, out);
             let Some(direction) = self.continue_from(scatter, draws, depth) else {
                 return sum;
             };
@@ -128,7 +126,8 @@ impl Integrator<'_> {
             out.rays += 1;
             let Some(hit) = self.scene.closest(&ray, leaving) else {
                 let (light, light_pdf) = environment.eval(ray.dir);
-                return sum + throughput * light * self.escape_weight(direction.pdf, light_pdf);
+                return sum
+                    + throughput * light * self.escape_weight(depth, direction.pdf, light_pdf);
             };
             let blend = draws.point(depth, Purpose::Choice)[2];
             next = Scatter::new(self.scene, &ray, &hit, false, blend);
@@ -140,49 +139,67 @@ impl Integrator<'_> {
 
     /// The direction in which the path goes on.
     fn continue_from(&self, scatter: &Scatter<'_>, draws: &Draws, depth: u32) -> Option<Direction> {
-        let count = match self.sampler {
-            Sampler::Qsir => candidates(depth),
-            Sampler::Bsdf | Sampler::Env | Sampler::Mis => 1,
-        };
-        if count == 1 {
-            let u = draws.point(depth, Purpose::Scatter);
-            return scatter.sample([u[0], u[1], u[2]]);
+        if self.sampler == Sampler::QsirOneRay
+            && let Some(plan) = Plan::one_ray(depth)
+        {
+            let environment = &self.scene.environment;
+            let target = self.target(depth);
+            return resample(scatter, environment, &plan, &target, draws, depth);
         }
-        let environment = &self.scene.environment;
-        #[cfg(test)]
-        if self.bare_target {
-            return resample(scatter, environment, &Target::bare(), draws, depth, count);
-        }
-        let target = Target::new(environment, depth);
-        resample(scatter, environment, &target, draws, depth, count)
+        let u = draws.point(depth, Purpose::Continue);
+        scatter.sample([u[0], u[1], u[2]])
     }
 
-    /// Light straight from the environment, by a sample of the environment.
+    fn target(&self, depth: u32) -> Target {
+        #[cfg(test)]
+        if self.bare_target {
+            return Target::DIRECT;
+        }
+        Target::all(&self.scene.environment, depth)
+    }
+
+    /// Light straight from the environment.
     fn direct(&self, scatter: &Scatter<'_>, draws: &Draws, depth: u32, out: &mut Sample) -> Rgb {
-        let u = draws.point(depth, Purpose::Light);
-        let Some(light) = self.scene.environment.sample([u[0], u[1]]) else {
-            return Rgb::ZERO;
+        let environment = &self.scene.environment;
+        let (dir, weight) = match self.sampler {
+            Sampler::Bsdf | Sampler::QsirOneRay => return Rgb::ZERO,
+            Sampler::Qsir => {
+                let plan = Plan::direct(depth);
+                match resample(scatter, environment, &plan, &Target::DIRECT, draws, depth) {
+                    Some(kept) => (kept.dir, kept.weight * environment.eval(kept.dir).0),
+                    None => return Rgb::ZERO,
+                }
+            }
+            Sampler::Env | Sampler::Mis => {
+                let u = draws.point(depth, Purpose::Light);
+                let Some(light) = environment.sample([u[0], u[1]]) else {
+                    return Rgb::ZERO;
+                };
+                let (density, scatter_pdf) = scatter.eval(light.dir);
+                let share = match self.sampler {
+                    Sampler::Mis => power(light.pdf, scatter_pdf),
+                    _ => 1.0,
+                };
+                (light.dir, density * light.radiance * (share / light.pdf))
+            }
         };
-        let (density, scatter_pdf) = scatter.eval(light.dir);
-        if density.max_element() <= 0.0 {
+        if weight.max_element() <= 0.0 {
             return Rgb::ZERO;
         }
-        let (ray, leaving) = scatter.leave(light.dir);
+        let (ray, leaving) = scatter.leave(dir);
         out.rays += 1;
         if self.scene.occluded(&ray, leaving) {
-            return Rgb::ZERO;
+            Rgb::ZERO
+        } else {
+            weight
         }
-        let share = match self.sampler {
-            Sampler::Mis => power(light.pdf, scatter_pdf),
-            Sampler::Qsir | Sampler::Bsdf | Sampler::Env => 1.0,
-        };
-        density * light.radiance * (share / light.pdf)
     }
 
     /// How much of the environment's light an escaping path may bring that was not gathered before.
-    fn escape_weight(&self, scatter_pdf: f32, light_pdf: f32) -> f32 {
+    fn escape_weight(&self, depth: u32, scatter_pdf: f32, light_pdf: f32) -> f32 {
         match self.sampler {
-            Sampler::Qsir | Sampler::Bsdf => 1.0,
+            Sampler::Bsdf | Sampler::QsirOneRay => 1.0,
+            Sampler::Qsir => Plan::direct(depth).escape_weight(scatter_pdf, light_pdf),
             Sampler::Env => 0.0,
             Sampler::Mis => power(scatter_pdf, light_pdf),
         }

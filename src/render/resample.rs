@@ -9,20 +9,78 @@
 //! ```
 //!
 //! makes `F(Y) W` an unbiased estimate of the integral of F wherever the target is positive where F
-//! is. The kept ray also carries what other strands send, so the target must not vanish where the
-//! environment is dark: the bare product of scattering and environment never sends a ray there and
-//! loses that light.
+//! is. Two uses:
+//!
+//! * Light straight from the environment: F is scattering times environment, and so is the target.
+//!   The ray that continues the path counts as one more technique, so that its escapes are not
+//!   wasted.
+//! * One ray for everything, as in the paper: the ray also carries what other strands send, so the
+//!   target must not vanish where the environment is dark. The bare product never sends a ray there
+//!   and loses that light.
 
 use super::draws::{Draws, Purpose};
 use super::scatter::{Direction, Scatter};
 use crate::color::luminance;
 use crate::scene::Environment;
 
-/// Scattering that the rays which hit other strands are expected to meet there.
+/// Scattering that rays which hit other strands are expected to meet there.
 const TYPICAL_ALBEDO: f32 = 0.5;
 
-/// The target's guess of the light along a direction: a blend of the environment and of the light
-/// that other strands send.
+/// Shares of candidates: how many are drawn from the scattering model and from the environment, and
+/// how many of the former the continuing ray stands for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plan {
+    /// Candidates of each kind.
+    half: u32,
+    /// Samples of the scattering model that the continuing ray counts as; 0 if there is none.
+    continuing: f32,
+}
+
+impl Plan {
+    /// Candidates for direct light at a scattering depth, beside a continuing ray. Eight pay off at
+    /// the eye; deeper, occlusion rules the variance and two do as well. The continuing ray counts
+    /// as much as all of them: at a tenth of that the noise in even light grows by half.
+    pub(super) fn direct(depth: u32) -> Self {
+        let half = match depth {
+            0 => 4,
+            1 | 2 => 2,
+            _ => 1,
+        };
+        Self {
+            half,
+            continuing: 2.0 * half as f32,
+        }
+    }
+
+    /// Candidates for the only ray; `None` deep in the fur, where drawing from the scattering model
+    /// alone does as well.
+    pub(super) fn one_ray(depth: u32) -> Option<Self> {
+        let half = match depth {
+            0 => 4,
+            1 | 2 => 2,
+            3..=5 => 1,
+            _ => return None,
+        };
+        Some(Self {
+            half,
+            continuing: 0.0,
+        })
+    }
+
+    /// Sum over techniques of count times density.
+    fn density(&self, scatter_pdf: f32, light_pdf: f32) -> f32 {
+        let half = self.half as f32;
+        half * (scatter_pdf + light_pdf) + self.continuing * scatter_pdf
+    }
+
+    /// The share of direct light that an escaping continuing ray brings.
+    pub(super) fn escape_weight(&self, scatter_pdf: f32, light_pdf: f32) -> f32 {
+        self.continuing * scatter_pdf / self.density(scatter_pdf, light_pdf)
+    }
+}
+
+/// The guess of the light along a direction: a blend of the environment and of the light that other
+/// strands send.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Target {
     /// Expected share of rays that escape.
@@ -32,21 +90,21 @@ pub(super) struct Target {
 }
 
 impl Target {
+    /// Only the environment: right for direct light, biased for a ray that carries all light.
+    pub(super) const DIRECT: Self = Self {
+        escape: 1.0,
+        indirect: 0.0,
+    };
+
+    /// Environment and other strands.
+    ///
     /// * `depth`: scattering events before this one. The chance to escape falls as paths go deeper;
-    ///   any value in (0, 1) is unbiased.
-    pub(super) fn new(environment: &Environment, depth: u32) -> Self {
+    ///   any value in (0, 1) is unbiased. At 0.9 dark directions come with large weights and noise
+    ///   doubles, below 0.2 bright lamps are missed.
+    pub(super) fn all(environment: &Environment, depth: u32) -> Self {
         Self {
             escape: 0.5 * 0.8f32.powi(depth.min(10) as i32),
             indirect: TYPICAL_ALBEDO * luminance(environment.mean()),
-        }
-    }
-
-    /// The bare product, biased: kept so that the test of the bias can be seen to fail.
-    #[cfg(test)]
-    pub(super) fn bare() -> Self {
-        Self {
-            escape: 1.0,
-            indirect: 0.0,
         }
     }
 
@@ -55,53 +113,33 @@ impl Target {
     }
 }
 
-/// Candidates at a scattering depth. Eight pay off where the ray has a fair chance to escape;
-/// deeper, occlusion rules the variance and candidates are wasted.
-pub(super) fn candidates(depth: u32) -> u32 {
-    match depth {
-        0 => 8,
-        1 | 2 => 4,
-        3..=5 => 2,
-        _ => 1,
-    }
-}
-
-/// Draws one direction; the weight is scattering density times W.
-///
-/// * `count`: candidates, a power of two >= 2.
+/// Draws one direction; its weight is scattering density times W.
 pub(super) fn resample(
     scatter: &Scatter<'_>,
     environment: &Environment,
+    plan: &Plan,
     target: &Target,
     draws: &Draws,
     bounce: u32,
-    count: u32,
 ) -> Option<Direction> {
-    let half = count / 2;
-    let (scattering, lights) = (
-        draws.net(bounce, Purpose::Scatter),
-        draws.net(bounce, Purpose::Light),
-    );
-    let first = draws.run(half);
+    let scattering = draws.net(bounce, Purpose::Scatter);
+    let lights = draws.net(bounce, Purpose::Light);
     let mut choice = draws.point(bounce, Purpose::Choice)[0];
     let (mut sum, mut kept) = (0.0f32, None);
-    for j in 0..count {
-        let u = if j < half {
-            scattering.point(first + j)
-        } else {
-            lights.point(first + j - half)
-        };
-        let dir = if j < half {
+    for j in 0..2 * plan.half {
+        // Each half is an aligned run of its own net.
+        let dir = if j < plan.half {
+            let u = scattering.point(draws.run(plan.half) + j);
             scatter.sample([u[0], u[1], u[2]]).map(|s| s.dir)
         } else {
+            let u = lights.point(draws.run(plan.half) + j - plan.half);
             environment.sample([u[0], u[1]]).map(|s| s.dir)
         };
         let Some(dir) = dir else { continue };
         let (density, scatter_pdf) = scatter.eval(dir);
         let (light, light_pdf) = environment.eval(dir);
         let value = target.value(luminance(density), luminance(light));
-        let pdf = half as f32 * (scatter_pdf + light_pdf);
-        let weight = value / pdf;
+        let weight = value / plan.density(scatter_pdf, light_pdf);
         // Also drops NaN.
         if !(weight > 0.0 && weight.is_finite()) {
             continue;

@@ -96,3 +96,32 @@ fn look() {
     write_film_png(&folder.join("ball.png"), &film, &view, &[]).unwrap();
     write_film_exr(&folder.join("ball.exr"), &film, &[("species", "test")]).unwrap();
 }
+
+#[test]
+#[ignore = "prints noise of the samplers"]
+fn noise_of_samplers() {
+    let groom = ball(20_000, 12.0, 150.0);
+    for (name, env) in [
+        ("studio", Environment::studio().turned(35.0)),
+        ("sky", Environment::sky(&crate::scene::Sun::default())),
+        ("white", Environment::white()),
+    ] {
+        let s = scene(&groom, Rgb::splat(0.8), env, Backdrop::Plain(Rgb::ZERO));
+        for sampler in [Sampler::Mis, Sampler::Qsir, Sampler::QsirOneRay] {
+            let job = RenderJob {
+                resolution: [48, 48],
+                spp: 64,
+                sampler,
+                ..RenderJob::default()
+            };
+            let film = job.run(&s, &Silent, &Cancel::default()).unwrap();
+            let mean: f32 = film.pixels.iter().map(|p| p.radiance.y).sum::<f32>() / 2304.0;
+            let (noise, time) = (film.noise(), film.report.elapsed.as_secs_f64());
+            eprintln!(
+                "{name} {sampler:?}: mean {mean:.4} noise {noise:.4} time {time:.2} rays {} eff {:.3}",
+                film.report.rays,
+                1.0 / (noise * noise * time)
+            );
+        }
+    }
+}
