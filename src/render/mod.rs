@@ -172,7 +172,7 @@ impl RenderJob {
         progress: &dyn Progress,
         cancel: &Cancel,
     ) -> Result<Film, RenderError> {
-        self.run_with(scene, self.integrator(scene), progress, cancel)
+        self.run_with(self.integrator(scene), progress, cancel)
     }
 
     fn integrator<'a>(&self, scene: &'a Scene) -> Integrator<'a> {
@@ -190,7 +190,6 @@ impl RenderJob {
 
     fn run_with(
         &self,
-        _scene: &Scene,
         integrator: Integrator<'_>,
         progress: &dyn Progress,
         cancel: &Cancel,

@@ -297,3 +297,6 @@ fn hash_bits(words: &[u32]) -> u64 {
         hash64(h ^ u64::from(w).wrapping_mul(0x9e37_79b9_7f4a_7c15)).wrapping_add(u64::from(w))
     })
 }
+
+#[cfg(test)]
+mod tests;

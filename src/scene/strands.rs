@@ -129,6 +129,11 @@ impl Strands {
         &self.joints
     }
 
+    /// The strand, by its index in the groom, that a joint belongs to.
+    pub fn strand_of_joint(&self, joint: usize) -> u32 {
+        self.strand_of[joint]
+    }
+
     /// Stable id of a strand.
     pub fn id(&self, strand: u32) -> u32 {
         self.strands[strand as usize].id

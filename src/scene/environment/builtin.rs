@@ -49,7 +49,7 @@ const STUDIO: [Panel; 4] = [
 impl Environment {
     /// Radiance 1 from everywhere: in it a lossless subject cannot be seen.
     pub fn white() -> Self {
-        Self::new(1, 1, vec![Rgb::ONE])
+        Self::from_texels(1, 1, vec![Rgb::ONE])
     }
 
     /// A photo studio seen from a camera on the +Z side; turn it along with the camera.
@@ -79,7 +79,7 @@ pub(super) fn raster(
             sum / (GRID * GRID) as f32
         })
         .collect();
-    Environment::new(width, height, texels)
+    Environment::from_texels(width, height, texels)
 }
 
 fn studio_radiance(dir: Vec3) -> Rgb {

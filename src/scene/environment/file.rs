@@ -104,7 +104,7 @@ pub fn load(path: &Path) -> Result<Environment, EnvironmentError> {
     for texel in &mut texels {
         *texel = texel.max(Rgb::ZERO);
     }
-    Ok(Environment::new(width, height, texels))
+    Ok(Environment::from_texels(width, height, texels))
 }
 
 /// Width, height and radiances, or what was wrong.
