@@ -7,9 +7,9 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 const CHORD_ERROR: f32 = 0.1;
 
 /// Turn between two pieces below which the chord error is let go, radians. Tangents run smoothly
-/// over joints, so a turn of 8 degrees is invisible unless the strand fills many pixels; at 20
+/// over joints, so a turn of 12 degrees is invisible unless the strand fills many pixels; at 20
 /// crimped underhair looks like polygons.
-const MAX_TURN: f32 = 8.0 * std::f32::consts::PI / 180.0;
+const MAX_TURN: f32 = 12.0 * std::f32::consts::PI / 180.0;
 
 /// Most pieces of one span, a guard against absurd control points.
 const MAX_PIECES: usize = 64;
