@@ -98,7 +98,7 @@ pub(crate) fn caustic(eta: f64, theta: f64, p: u32) -> Option<f64> {
         return None;
     }
     let azimuth = Ray::new(eta, theta, h2.sqrt()).azimuth(p);
-    Some((azimuth + PI).rem_euclid(2.0 * PI) - PI).map(f64::abs)
+    Some(((azimuth + PI).rem_euclid(2.0 * PI) - PI).abs())
 }
 
 /// Mean of `f(theta)` over a bin of inclinations, evenly in solid angle (in `sin theta`).
@@ -213,8 +213,10 @@ pub(crate) fn direction(n: usize, texel: usize, a: f64, b: f64) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// Published values for eta = 1.55: energies, caustics of TRT and of the next lobe in degrees.
-    const TABLE: [(f64, [f64; 4], Option<f64>, Option<f64>); 7] = [
+    type Known = (f64, [f64; 4], Option<f64>, Option<f64>);
+
+    /// Known values for eta = 1.55, angles and energies, caustics of TRT and of the next lobe in degrees.
+    const TABLE: [Known; 7] = [
         (
             0.0,
             [0.074955, 0.861791, 0.055672, 0.007582],
