@@ -231,7 +231,9 @@ impl<'a> Grower<'a> {
     fn lift(&self, mut point: Vec3, root: &Root, along: f32) -> Vec3 {
         if self.gravity == 0.0 {
             let least = LEAST_HEIGHT * along;
-            let below = self.field.and_then(|field| field.above(point));
+            // Near the root the skin is its tangent plane; the grid is coarser than that.
+            let field = self.field.filter(|field| along > 1.5 * field.cell());
+            let below = field.and_then(|field| field.above(point));
             let (normal, height) = match below {
                 Some(above) => (above.normal, above.height),
                 None => (root.normal, (point - root.position).dot(root.normal)),

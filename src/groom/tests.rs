@@ -125,3 +125,266 @@ fn same_bytes_for_any_number_of_threads() {
     assert!(one == on(7));
     assert!(one != grown(&skin, &fox(), 30_000, 2), "the seed matters");
 }
+
+/// Distance of each root to its nearest neighbor of the same class.
+fn nearest_distances(roots: &[Vec3], reach: f32) -> Vec<f32> {
+    let cell = |p: Vec3| (p / reach).floor().as_ivec3();
+    let mut grid: HashMap<glam::IVec3, Vec<usize>> = HashMap::new();
+    for (i, p) in roots.iter().enumerate() {
+        grid.entry(cell(*p)).or_default().push(i);
+    }
+    let around = |i: usize| {
+        let home = cell(roots[i]);
+        (0..27)
+            .map(move |k| home + glam::IVec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1))
+            .filter_map(|c| grid.get(&c))
+            .flatten()
+            .filter(move |&&j| j != i)
+            .map(move |&j| roots[i].distance(roots[j]))
+            .fold(f32::INFINITY, f32::min)
+    };
+    (0..roots.len()).map(around).collect()
+}
+
+fn roots(groom: &Groom, class: u8) -> Vec<Vec3> {
+    (0..groom.strands())
+        .filter(|&i| groom.class[i] == class)
+        .map(|i| groom.strand(i)[0])
+        .collect()
+}
+
+/// Blue noise: no two roots close together, no holes, for the whole and for every prefix. Of random
+/// points some pair is at 0.01 of the hexagonal distance, and the mean is at 0.47.
+#[test]
+fn roots_are_blue_noise_at_every_density() {
+    let skin = skin::load("swatch").unwrap();
+    let groom = grown(&skin, &fox(), 40_000, 5);
+    let under = roots(&groom, 1);
+    for count in [1_000, 3_700, 12_345, under.len()] {
+        let hexagonal = (2.0 / 3f64.sqrt() * skin.area() / count as f64).sqrt() as f32;
+        let distances = nearest_distances(&under[..count], 1.5 * hexagonal);
+        let least = distances.iter().fold(f32::INFINITY, |a, &b| a.min(b)) / hexagonal;
+        let mean = distances.iter().sum::<f32>() / count as f32 / hexagonal;
+        let most = distances.iter().fold(0.0f32, |a, &b| a.max(b)) / hexagonal;
+        assert!(least > 0.6, "{count}: least {least}");
+        assert!((0.7..0.85).contains(&mean), "{count}: mean {mean}");
+        assert!(most < 1.7, "{count}: most {most}");
+    }
+}
+
+/// As many roots per area as the density factor says, in every part of the skin.
+#[test]
+fn roots_follow_the_density_map() {
+    let mut skin = skin::load("swatch").unwrap();
+    let side = |uv: Vec2| if uv.x < 0.5 { 0 } else { 1 };
+    for (density, uv) in skin.density.iter_mut().zip(&skin.uvs) {
+        *density = 0.25 + 0.75 * uv.x;
+    }
+    let groom = grown(&skin, &fox(), 30_000, 8);
+    // The integral of 1/4 + 3/4 u over each half.
+    let expected = [0.25 * 0.5 + 0.75 * 0.125, 0.25 * 0.5 + 0.75 * 0.375];
+    let mut counts = [0.0, 0.0];
+    for uv in &groom.root_uv {
+        counts[side(*uv)] += 1.0;
+    }
+    for k in 0..2 {
+        let share = counts[k] / groom.strands() as f64;
+        let expected = expected[k] / (expected[0] + expected[1]);
+        assert!(
+            (share / expected - 1.0).abs() < 0.02,
+            "half {k}: {share} for {expected}"
+        );
+    }
+    skin.density.fill(0.0);
+    let refused = grow(
+        &skin,
+        &fox(),
+        &GroomSettings::default(),
+        &Silent,
+        &Cancel::default(),
+    );
+    assert!(matches!(refused, Err(GroomError::BareSkin { .. })));
+}
+
+#[test]
+fn a_full_coat_has_the_species_density() {
+    let skin = skin::load("swatch").unwrap();
+    let mut species = fox();
+    for class in &mut species.classes {
+        class.groom.density_per_cm2 *= 0.02;
+    }
+    let groom = grow(
+        &skin,
+        &species,
+        &GroomSettings::default(),
+        &Silent,
+        &Cancel::default(),
+    )
+    .unwrap();
+    for (k, class) in species.classes.iter().enumerate() {
+        let count = roots(&groom, k as u8).len() as f64;
+        let density = count / (skin.area() * 1e4);
+        assert!((density / class.groom.density_per_cm2 - 1.0).abs() < 0.02);
+        assert!(groom.width_scale[k] < 1.005, "nothing to compensate");
+    }
+}
+
+#[test]
+fn strands_start_on_the_skin_and_leave_it() {
+    for name in ["ball", "swatch", "body"] {
+        let skin = skin::load(name).unwrap();
+        let groom = grown(&skin, &fox(), 8_000, 2);
+        let surface = Surface::new(&skin).unwrap();
+        for class in 0..2u8 {
+            let count = roots(&groom, class).len();
+            let seed = follicle::class_seed(2, class as usize);
+            let follicles = surface.scatter(seed, count, &Silent, &Cancel::default());
+            let strands = (0..groom.strands()).filter(|&i| groom.class[i] == class);
+            for (i, follicle) in strands.zip(follicles.unwrap()) {
+                let root = surface.root(&follicle);
+                let strand = groom.strand(i);
+                assert_eq!(strand[0], root.position);
+                let first = strand[1] - strand[0];
+                // Spread and tufts tilt a hair, but it stays outside. Under the paws the ground
+                // leaves no room.
+                let pressed = skin.floor.is_some_and(|floor| strand[0].y < floor + 0.005);
+                assert!(
+                    pressed || first.dot(root.normal) > 0.0,
+                    "{name}: strand {i} dives"
+                );
+                assert!(strand.iter().all(|p| p.is_finite()));
+            }
+        }
+        // Roots lie on the triangles: within the rounding of a coordinate.
+        for i in (0..groom.strands()).step_by(97) {
+            let distance = distance_to(&skin, groom.strand(i)[0]);
+            assert!(distance < 1e-6, "{name}: {distance}");
+        }
+    }
+}
+
+/// Distance from `p` to the nearest triangle, by looking at all of them.
+fn distance_to(skin: &Skin, p: Vec3) -> f64 {
+    let to_segment = |a: glam::DVec3, b: glam::DVec3, p: glam::DVec3| {
+        let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+        p.distance(a + t * (b - a))
+    };
+    (0..skin.triangles.len())
+        .map(|i| {
+            let [a, b, c] = skin.corners(i).map(|v| v.as_dvec3());
+            let p = p.as_dvec3();
+            let n = (b - a).cross(c - a);
+            let inside = |u: glam::DVec3, v: glam::DVec3| n.dot((v - u).cross(p - u)) >= 0.0;
+            if inside(a, b) && inside(b, c) && inside(c, a) {
+                (p - a).dot(n).abs() / n.length()
+            } else {
+                to_segment(a, b, p)
+                    .min(to_segment(b, c, p))
+                    .min(to_segment(c, a, p))
+            }
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn the_coat_stays_outside_the_body_and_above_the_ground() {
+    let skin = skin::load("body").unwrap();
+    let groom = grown(&skin, &fox(), 20_000, 4);
+    let field = field::Field::new(&skin);
+    let (mut inside, mut known) = (0, 0);
+    for p in &groom.points {
+        assert!(p.y > -0.002, "{p} is below the ground");
+        if let Some(above) = field.above(*p) {
+            known += 1;
+            inside += usize::from(above.height < -0.001);
+        }
+    }
+    assert!(inside * 100 < known, "{inside} of {known} points inside");
+}
+
+#[test]
+fn lengths_and_widths_have_the_species_distribution() {
+    let skin = skin::load("swatch").unwrap();
+    let mut species = fox();
+    for class in &mut species.classes {
+        class.groom.clump = 0.0;
+        class.groom.crimp_mm = 0.0;
+    }
+    let groom = grown(&skin, &species, 20_000, 6);
+    for (k, class) in species.classes.iter().enumerate() {
+        let of_class = || (0..groom.strands()).filter(|&i| groom.class[i] as usize == k);
+        let lengths: Vec<f64> = of_class().map(|i| f64::from(groom.length[i])).collect();
+        let n = lengths.len() as f64;
+        let mean = lengths.iter().sum::<f64>() / n * 1e3;
+        // Tufts and drift add their own variation; a swatch holds few tufts.
+        let expected = class.groom.length_mm;
+        assert!((mean / expected - 1.0).abs() < 0.04, "{mean} mm");
+        let logs: Vec<f64> = lengths.iter().map(|l| (l * 1e3 / expected).ln()).collect();
+        let middle = logs.iter().sum::<f64>() / n;
+        let sigma = (logs.iter().map(|l| (l - middle).powi(2)).sum::<f64>() / n).sqrt();
+        let low = class.groom.length_sigma;
+        assert!(
+            (0.9 * low..low + 0.06).contains(&sigma),
+            "{sigma} for {low}"
+        );
+
+        let widest = |i: usize| {
+            let range = groom.offsets[i] as usize..groom.offsets[i + 1] as usize;
+            groom.widths[range].iter().fold(0.0f32, |a, &b| a.max(b))
+        };
+        let mean = of_class().map(|i| f64::from(widest(i))).sum::<f64>() / n * 1e6;
+        let expected = class.groom.diameter_um * f64::from(groom.width_scale[k]);
+        // Control points need not hit the widest place.
+        assert!(
+            (0.93..1.02).contains(&(mean / expected)),
+            "{mean} um for {expected}"
+        );
+        for i in of_class().step_by(50) {
+            let (from, to) = (groom.offsets[i] as usize, groom.offsets[i + 1] as usize);
+            let widths = &groom.widths[from..to];
+            assert!(widths.iter().all(|&w| w > 0.0));
+            let (root, tip) = (widths[0] / widest(i), widths[widths.len() - 1] / widest(i));
+            assert!(
+                (root - class.groom.stalk as f32).abs() < 0.08,
+                "stalk {root}"
+            );
+            assert!(tip < 0.15, "tip {tip}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_grow_is_refused_in_words() {
+    let swatch = skin::load("swatch").unwrap();
+    let refuse = |skin: &Skin, species: &Species, strands: Option<usize>| {
+        let settings = GroomSettings { strands, seed: 0 };
+        let result = grow(skin, species, &settings, &Silent, &Cancel::default());
+        let error = result.unwrap_err();
+        assert_eq!(error.blame(), crate::blame::Blame::Input);
+        error.to_string()
+    };
+    assert!(refuse(&swatch, &fox(), Some(0)).contains("0 strands"));
+    assert!(refuse(&swatch, &fox(), Some(60_000_000)).contains("at most 50000000"));
+    let mut bad = fox();
+    bad.classes[1].groom.length_mm = 0.0;
+    let message = refuse(&swatch, &bad, None);
+    assert!(
+        message.contains("`under`") && message.contains("length_mm is 0"),
+        "{message}"
+    );
+    bad.classes[1].groom.length_mm = f64::NAN;
+    assert!(refuse(&swatch, &bad, None).contains("NaN"));
+    // All strands in one point: refused, not ground through.
+    let mut point = swatch.clone();
+    for p in &mut point.positions {
+        *p = Vec3::splat(0.1) + *p * 1e-6;
+    }
+    assert!(refuse(&point, &fox(), Some(10_000_000)).contains("apart"));
+    let cancel = Cancel::default();
+    cancel.cancel();
+    let stopped = grow(&swatch, &fox(), &GroomSettings::default(), &Silent, &cancel);
+    assert_eq!(
+        stopped.unwrap_err().blame(),
+        crate::blame::Blame::Interrupted
+    );
+}
