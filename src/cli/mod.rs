@@ -8,6 +8,7 @@ mod bake;
 mod cache;
 mod console;
 mod failure;
+mod fiber;
 mod render;
 mod schema;
 mod signals;
@@ -37,6 +38,8 @@ struct Cli {
 enum Command {
     /// Show the built-in animals and check species files.
     Species(species::Args),
+    /// Draw a fiber like a micrograph, or write it as a mesh.
+    Fiber(fiber::Args),
     /// Trace photons through a fiber into a scattering table.
     Bake(bake::Args),
     /// Render a still of a species: bakes what it needs, grows the fur, traces the picture.
@@ -76,6 +79,7 @@ fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
         Command::Schema(args) => schema::run(&args, console),
         Command::Species(args) => species::run(&args, console),
         Command::Table(args) => table::run(&args, console),
+        Command::Fiber(args) => fiber::run(&args, console),
         Command::Bake(args) => bake::run(&args, console),
         Command::Cache(args) => cache::run(&args, console),
     }

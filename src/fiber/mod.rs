@@ -8,6 +8,7 @@ mod froth;
 mod ladder;
 mod march;
 mod medulla;
+mod mesh;
 mod packing;
 mod pattern;
 mod scales;
@@ -18,6 +19,7 @@ mod surface;
 mod tests;
 
 pub use error::FiberError;
+pub use mesh::MeshPart;
 
 use crate::species::{CuticlePattern, MedullaKind, Structure};
 use glam::DVec3;
@@ -147,6 +149,22 @@ impl Fiber {
     /// Radius of the smallest cylinder about z that holds the fiber, micrometers.
     pub fn bounding_radius_um(&self) -> f64 {
         self.section.a * self.surface.rho_max()
+    }
+
+    /// Semi-axes of the mean section along x and y, micrometers.
+    pub fn semi_axes_um(&self) -> [f64; 2] {
+        [self.section.a, self.section.b]
+    }
+
+    /// Whether a point is within the outline of the medulla.
+    pub fn is_in_medulla(&self, point: DVec3) -> bool {
+        let p = self.section.unit_point(point);
+        p.x * p.x + p.y * p.y < self.medulla.ratio * self.medulla.ratio
+    }
+
+    /// Whether a hit was on the riser of a scale rather than on its face.
+    pub fn is_riser(&self, state: HitState) -> bool {
+        matches!(state.element, Element::Outer(OuterState::Riser { .. }))
     }
 
     /// Whether mirroring phi -> -phi gives the same statistics, so that tables may be folded. Holds
