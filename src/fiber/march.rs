@@ -274,6 +274,7 @@ impl Scales {
     }
 
     /// The cell behind an exit.
+    #[inline]
     fn step(&self, cell: Cell, exit: Exit, z: f64) -> (Cell, StartOn) {
         match exit {
             Exit::Limit => (cell, StartOn::Nothing),

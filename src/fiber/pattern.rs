@@ -141,9 +141,10 @@ impl Builder<'_> {
 
     /// A flat scale of row `row`: height zero at `base`, slope and level jittered.
     fn scale(&self, base: f64, index: usize) -> Tile {
-        // Natural scatter: free edges +-20 % high, levels +-10 % so that the sides of tiles show.
+        // Natural scatter: free edges +-20 % high, levels +-20 %: without it the sides of tiles in
+        // one row, where neither lies over the other, would be no edges at all.
         let slope = self.slope() * (1.0 + 0.2 * self.jitter(11, index));
-        let lift = 0.1 * self.cuticle.height_um * self.jitter(12, index);
+        let lift = 0.2 * self.cuticle.height_um * self.jitter(12, index);
         Tile {
             height_um: lift - slope * base,
             slope,
@@ -295,7 +296,7 @@ impl Builder<'_> {
             .map(|index| {
                 let (row, i) = (index / n, index % n);
                 let turn = i as f64 + 0.5 * (row % 2) as f64 + 0.3 * self.jitter(1, index);
-                let z = row as f64 + 0.25 * self.jitter(2, index);
+                let z = row as f64 + 0.33 * self.jitter(2, index);
                 (z, turn)
             })
             .collect();

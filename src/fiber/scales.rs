@@ -175,6 +175,7 @@ impl Scales {
     }
 
     /// The cell that holds a point of the unit-circle frame.
+    #[inline]
     pub(super) fn locate(&self, p: DVec3) -> Cell {
         let angle = pseudo_angle(p.x, p.y) * (ANGLE_STEPS as f64 / 4.0);
         let mut sector = usize::from(self.start_of_angle[(angle as usize).min(ANGLE_STEPS - 1)]);

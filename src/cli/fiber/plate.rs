@@ -20,6 +20,8 @@ const SAMPLES: u32 = 4;
 const BACKGROUND: Vec3 = Vec3::new(0.045, 0.05, 0.058);
 const INK: Vec3 = Vec3::new(0.93, 0.93, 0.9);
 const FAINT: Vec3 = Vec3::new(0.6, 0.62, 0.64);
+/// Rows of scales that the outside shows at least.
+const ROWS_SHOWN: f64 = 6.0;
 /// Angle of the view toward the root, radians: from straight above, risers are edge-on and invisible.
 const VIEW_TILT: f64 = 0.32;
 
@@ -66,7 +68,9 @@ pub(super) fn draw(
     };
     progress.begin("drawing", (2 * long.height + section.height) as u64, "rows");
     let diameter = 2.0 * fiber.bounding_radius_um();
-    let scale = diameter / (0.86 * long.height as f64);
+    // The fiber fills the picture, unless it is so thin that no pattern of scales would show.
+    let pattern = ROWS_SHOWN * fiber.structure().cuticle.pitch_um / long.width as f64;
+    let scale = (diameter / (0.86 * long.height as f64)).max(pattern);
     shoot(
         &mut canvas,
         long,
@@ -98,12 +102,13 @@ pub(super) fn draw(
     let under = |p: Panel| at(p.x, p.y + p.height + line / 4);
     canvas.text(under(long), "outside, root left, tip right", text, FAINT);
     canvas.text(under(cut), "front half cut away", text, FAINT);
-    canvas.text(under(section), "cross-section", text, FAINT);
+    let next_line = Vec2::new(0.0, GLYPH_HEIGHT * text * 1.7);
+    canvas.text(under(section) + next_line, "cross-section", text, FAINT);
     bar(&mut canvas, scale, long, text);
     bar(&mut canvas, scale, cut, text);
     bar(&mut canvas, across, section, text);
     let columns = (side as f32 / text_width("m", text)) as usize;
-    let mut y = section.y + section.height + 2 * line;
+    let mut y = section.y + section.height + 3 * line;
     for row in labels.facts.iter().flat_map(|fact| wrap(fact, columns)) {
         canvas.text(at(section.x, y), &row, text, INK);
         y += (GLYPH_HEIGHT * text * 1.5) as usize;
@@ -142,8 +147,13 @@ fn lengthwise<'a>(fiber: &'a Fiber, scale: f64, panel: Panel, cut: bool) -> View
         specimen: Specimen {
             fiber,
             removed,
-            // Low from the root and from above: margins throw shadows toward the tip.
-            lamp: DVec3::new(0.62, -0.62, -0.75).normalize(),
+            // Low from the root and from above: margins throw shadows toward the tip. A cut is lit
+            // more steeply, or the part that is left whole darkens it.
+            lamp: if cut {
+                DVec3::new(0.5, -0.8, -0.25).normalize()
+            } else {
+                DVec3::new(0.62, -0.62, -0.75).normalize()
+            },
             tinted: cut,
         },
         dir,
@@ -234,7 +244,7 @@ fn pixel(view: &View, panel: Panel, x: usize, y: usize) -> Vec3 {
 
 /// A scale bar in the lower right corner of a panel.
 fn bar(canvas: &mut Canvas, um_per_pixel: f64, panel: Panel, text: f32) {
-    let room = 0.28 * panel.width as f64 * um_per_pixel;
+    let room = 0.3 * panel.width as f64 * um_per_pixel;
     let decade = 10f64.powf(room.log10().floor());
     let length = [5.0, 2.0, 1.0]
         .map(|f| f * decade)
