@@ -17,8 +17,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let shield = &guard.stations[guard.stations.len() - 1];
 
     let fiber = Fiber::build(&shield.structure, 0)?;
-    let settings = Settings { photons: 1_000_000, ..Settings::cone() };
-    let baked = bake(&fiber, &settings, Provenance::default(), &Silent, &Cancel::default())?;
+    let settings = Settings {
+        photons: 1_000_000,
+        ..Settings::cone()
+    };
+    let baked = bake(
+        &fiber,
+        &settings,
+        Provenance::default(),
+        &Silent,
+        &Cancel::default(),
+    )?;
 
     // One bake serves every pigment.
     for (i, band) in guard.pigment.iter().enumerate() {
@@ -27,7 +36,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let lobe = table.lobe(wo);
         println!("band {i} from the tip: albedo {:.3}", lobe.albedo());
         if let Some(wi) = lobe.sample([0.3, 0.7, 0.2]) {
-            println!("  light from {wi:.3} arrives with density {:.3}", lobe.density(wi));
+            println!(
+                "  light from {wi:.3} arrives with density {:.3}",
+                lobe.density(wi)
+            );
         }
     }
     Ok(())

@@ -19,13 +19,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     let bear = species::load("polar-bear", &[])?;
 
     // Scattering: one table per class, station and pigment zone.
-    let bake = Settings { photons: 1_000_000, ..Settings::cone() };
+    let bake = Settings {
+        photons: 1_000_000,
+        ..Settings::cone()
+    };
     let cache = Cache::of_user();
     let materials = assembly::materials(&bear, &bake, cache.as_ref(), &Silent, &cancel)?;
 
     // Fur on a ball.
     let ball = skin::load("ball")?;
-    let settings = GroomSettings { strands: Some(40_000), seed: 1 };
+    let settings = GroomSettings {
+        strands: Some(40_000),
+        seed: 1,
+    };
     let groom = groom::grow(&ball, &bear, &settings, &Silent, &cancel)?;
 
     // Picture.
@@ -38,7 +44,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         ground: None,
         view: View::default(),
     })?;
-    let job = RenderJob { resolution: [480, 360], spp: 16, ..RenderJob::default() };
+    let job = RenderJob {
+        resolution: [480, 360],
+        spp: 16,
+        ..RenderJob::default()
+    };
     let film = job.run(&scene, &Silent, &cancel)?;
     image::write_film_png(&output, &film, &ViewTransform::default(), &[])?;
     println!("{}", output.display());

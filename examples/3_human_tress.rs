@@ -24,7 +24,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     let human = species::load("human", &overrides.map(String::from))?;
 
-    let bake = Settings { photons: 4_000_000, ..Settings::cone() };
+    let bake = Settings {
+        photons: 4_000_000,
+        ..Settings::cone()
+    };
     let cache = Cache::of_user();
     let materials = assembly::materials(&human, &bake, cache.as_ref(), &Silent, &cancel)?;
 
@@ -37,9 +40,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         environment: Environment::studio(),
         backdrop: Backdrop::default(),
         ground: None,
-        view: View { yaw_deg: 20.0, pitch_deg: 0.0, ..View::default() },
+        view: View {
+            yaw_deg: 20.0,
+            pitch_deg: 0.0,
+            ..View::default()
+        },
     })?;
-    let job = RenderJob { resolution: [1024, 768], spp: 32, ..RenderJob::default() };
+    let job = RenderJob {
+        resolution: [1024, 768],
+        spp: 32,
+        ..RenderJob::default()
+    };
     let film = job.run(&scene, &Silent, &cancel)?;
     image::write_film_png(&output, &film, &ViewTransform::default(), &[])?;
     println!("{} strands, {}", groom.strands(), output.display());

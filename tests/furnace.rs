@@ -18,11 +18,17 @@ use vair::{skin, species};
 fn furnace(name: &str, overrides: &[&str], sampler: Sampler) -> (Rgb, f64, f64) {
     let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
     let species = species::load(name, &overrides).unwrap();
-    let bake = Settings { photons: 300_000, ..Settings::cone() };
+    let bake = Settings {
+        photons: 300_000,
+        ..Settings::cone()
+    };
     let cancel = Cancel::default();
     let materials = assembly::materials(&species, &bake, None, &Silent, &cancel).unwrap();
     let ball = skin::load("ball").unwrap();
-    let settings = GroomSettings { strands: Some(4000), seed: 2 };
+    let settings = GroomSettings {
+        strands: Some(4000),
+        seed: 2,
+    };
     let groom = groom::grow(&ball, &species, &settings, &Silent, &cancel).unwrap();
     let scene = Scene::build(SceneParts {
         groom: &groom,
@@ -34,7 +40,12 @@ fn furnace(name: &str, overrides: &[&str], sampler: Sampler) -> (Rgb, f64, f64) 
         view: View::default(),
     })
     .unwrap();
-    let job = RenderJob { resolution: [40, 40], spp: 64, sampler, ..RenderJob::default() };
+    let job = RenderJob {
+        resolution: [40, 40],
+        spp: 64,
+        sampler,
+        ..RenderJob::default()
+    };
     let film = job.run(&scene, &Silent, &cancel).unwrap();
     let n = film.pixels.len() as f32;
     let mean = film.pixels.iter().map(|p| p.radiance).sum::<Rgb>() / n;
@@ -50,12 +61,22 @@ fn clear_fur_in_a_white_world_is_invisible() {
         assert!(fur > 0.15, "there is fur: {fur}");
         // Background pixels are 1 exactly; the bound is on what the fur itself is off.
         let off = f64::from((mean - 1.0).abs().max_element()) / fur;
-        assert!(off < 0.005 + 3.0 * error / fur, "{sampler:?}: {mean} +- {error}");
+        assert!(
+            off < 0.005 + 3.0 * error / fur,
+            "{sampler:?}: {mean} +- {error}"
+        );
     }
 }
 
 #[test]
 fn pigment_is_seen_in_the_furnace() {
-    let (mean, _, _) = furnace("polar-bear", &["guard.pigment.0.eumelanin=0.2"], Sampler::Qsir);
-    assert!(mean.x < 0.995 && mean.z < mean.x, "a little eumelanin must show: {mean}");
+    let (mean, _, _) = furnace(
+        "polar-bear",
+        &["guard.pigment.0.eumelanin=0.2"],
+        Sampler::Qsir,
+    );
+    assert!(
+        mean.x < 0.995 && mean.z < mean.x,
+        "a little eumelanin must show: {mean}"
+    );
 }

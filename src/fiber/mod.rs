@@ -3,6 +3,7 @@
 //! Fiber frame: +Z is the tangent, root to tip; micrometers. The geometry repeats along z with
 //! [`Fiber::period_um`]; rays may start and end at any z.
 
+mod covering;
 mod error;
 mod froth;
 mod ladder;

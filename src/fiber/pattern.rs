@@ -5,6 +5,7 @@
 //! each other in one global order (rank), so that neighboring lines can be joined. The shapes follow
 //! the terms of hair microscopy (Teerink 1991; Deedrick and Koch 2004).
 
+use super::covering::{ascend, envelope, visible};
 use super::section::Line;
 use crate::sampling::{Rng, hash64};
 use crate::species::{Cuticle, CuticlePattern};
@@ -340,71 +341,6 @@ impl Builder<'_> {
         let knots = (12.0 * self.around as f64).round().max(24.0) as usize;
         self.cuticle.jitter
             * (0.07 * self.noise(8, tile, knots, turn)
-                + 0.04 * self.noise(9, tile, 3 * knots, turn))
-    }
-}
-
-/// Ranks of the rows that show on a line: those that end higher than every row before, cyclically.
-fn visible(ends: &[f64], period: f64) -> impl Iterator<Item = usize> {
-    let before = ends.iter().fold(f64::NEG_INFINITY, |m, &e| m.max(e)) - period;
-    ends.iter()
-        .scan(before, |highest, &end| {
-            let shows = end > *highest;
-            *highest = highest.max(end);
-            Some(shows)
-        })
-        .enumerate()
-        .filter_map(|(k, shows)| shows.then_some(k))
-        .collect::<Vec<_>>()
-        .into_iter()
-}
-
-/// Lower envelope of `offset_k + (z - z_k)^2` over the seeds and their periodic images: the seeds
-/// of one period that show, in order, with the upper end of each.
-fn envelope(seeds: &[(f64, f64)], period: f64, offset: impl Fn(usize) -> f64) -> Vec<(usize, f64)> {
-    let n = seeds.len();
-    // Three images: what shows in the middle one is free of end effects.
-    let image = |j: usize| {
-        let z = seeds[j % n].0 + ((j / n) as f64 - 1.0) * period;
-        (2.0 * z, -(z * z) - offset(j % n))
-    };
-    let meet = |i: usize, j: usize| {
-        let ((si, ci), (sj, cj)) = (image(i), image(j));
-        (ci - cj) / (sj - si)
-    };
-    let mut hull: Vec<usize> = Vec::new();
-    for j in 0..3 * n {
-        while let Some(&top) = hull.last() {
-            if image(j).0 - image(top).0 < 1e-12 {
-                // Same height: the nearer seed hides the other everywhere.
-                if image(j).1 <= image(top).1 {
-                    break;
-                }
-            } else if hull.len() < 2 || meet(hull[hull.len() - 2], top) < meet(top, j) {
-                break;
-            }
-            hull.pop();
-        }
-        match hull.last() {
-            Some(&top) if image(j).0 - image(top).0 < 1e-12 => {}
-            _ => hull.push(j),
-        }
-    }
-    hull.windows(2)
-        .filter(|w| (n..2 * n).contains(&w[0]))
-        .map(|w| (w[0] % n, meet(w[0], w[1])))
-        .collect()
-}
-
-/// Lifts ends that ripples have pushed below their predecessor.
-fn ascend(spans: &mut [Span], period: f64) {
-    let mut lo = spans
-        .iter()
-        .map(|s| s.end_um)
-        .fold(f64::NEG_INFINITY, f64::max)
-        - period;
-    for span in spans {
-        span.end_um = span.end_um.max(lo);
-        lo = span.end_um;
+                + 0.02 * self.noise(9, tile, 2 * knots, turn))
     }
 }
