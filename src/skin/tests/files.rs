@@ -62,7 +62,7 @@ fn cube_ply_binary(big: bool) -> Vec<u8> {
         "binary_little_endian"
     };
     let mut bytes = ply_header(format).into_bytes();
-    let mut word = |bits: u32, out: &mut Vec<u8>| {
+    let word = |bits: u32, out: &mut Vec<u8>| {
         out.extend(if big {
             bits.to_be_bytes()
         } else {
