@@ -4,13 +4,13 @@ use super::Settings;
 use crate::species::Structure;
 use sha2::{Digest, Sha256};
 
-/// Raised whenever geometry, photon walk or tally change what comes out.
-const FORMAT: u32 = 1;
+/// Raised whenever geometry, photon walk or tally change what comes out between two versions.
+const FORMAT: u32 = 2;
 
-/// SHA-256, in hexadecimal, of structure, settings and format version.
+/// SHA-256, in hexadecimal, of structure, settings, format and program version.
 pub fn content_hash(structure: &Structure, settings: &Settings) -> String {
     // Plain structs of finite numbers always serialize; the debug form is as unique.
-    let text = serde_json::to_string(&(FORMAT, structure, settings))
+    let text = serde_json::to_string(&(FORMAT, env!("CARGO_PKG_VERSION"), structure, settings))
         .unwrap_or_else(|_| format!("{FORMAT} {structure:?} {settings:?}"));
     Sha256::digest(text.as_bytes())
         .iter()
