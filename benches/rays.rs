@@ -84,7 +84,7 @@ fn thread_seconds() -> f64 {
         .split_whitespace()
         .next()
         .and_then(|n| n.parse::<f64>().ok());
-    nanoseconds.unwrap_or_else(|| wall_nanoseconds()) * 1e-9
+    nanoseconds.unwrap_or_else(wall_nanoseconds) * 1e-9
 }
 
 fn wall_nanoseconds() -> f64 {

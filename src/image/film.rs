@@ -123,3 +123,87 @@ fn channels(film: &Film) -> AnyChannels<FlatSamples> {
         .collect(),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::{Crop, NO_STRAND, Report};
+    use exr::prelude::{ReadChannels, ReadLayers, read};
+
+    fn film() -> Film {
+        let pixel = |i: u32| Pixel {
+            radiance: glam::Vec3::new(0.1 * i as f32, 1.0, 2.0),
+            alpha: 0.5,
+            variance: 1e-3,
+            samples: 4,
+            depth: if i == 0 { f32::INFINITY } else { 900.0 },
+            albedo: glam::Vec3::splat(0.25),
+            normal: glam::Vec3::Y,
+            tangent: glam::Vec3::Z,
+            strand: if i == 0 { NO_STRAND } else { 70_000 + i },
+            root_uv: glam::Vec2::new(0.75, 0.125),
+        };
+        Film {
+            crop: Crop {
+                x: 5,
+                y: 2,
+                width: 3,
+                height: 2,
+            },
+            resolution: [20, 10],
+            pixels: (0..6).map(pixel).collect(),
+            report: Report::default(),
+        }
+    }
+
+    #[test]
+    fn all_passes_come_back_and_the_bytes_repeat() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let provenance = [("species", "name = \"x\""), ("seed", "3"), ("settings", "")];
+        write_film_exr(&path, &film(), &provenance).unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        for _ in 0..8 {
+            write_film_exr(&path, &film(), &provenance).unwrap();
+            assert_eq!(std::fs::read(&path).unwrap(), bytes);
+        }
+        let image = read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .first_valid_layer()
+            .all_attributes()
+            .from_buffered(io::Cursor::new(bytes))
+            .unwrap();
+        let layer = &image.layer_data;
+        assert_eq!(layer.attributes.layer_position, Vec2(5, 2));
+        assert_eq!(image.attributes.display_window.size, Vec2(20, 10));
+        let attribute = &layer.attributes.other[&Text::new_or_panic(PROVENANCE_ATTRIBUTE)];
+        let AttributeValue::Text(json) = attribute else {
+            panic!("{attribute:?}")
+        };
+        let json: serde_json::Value = serde_json::from_str(&json.to_string()).unwrap();
+        assert_eq!(json["species"], "name = \"x\"");
+        let channel = |name: &str| {
+            let found = layer.channel_data.list.iter().find(|c| c.name.eq(name));
+            found
+                .unwrap()
+                .sample_data
+                .values_as_f32()
+                .collect::<Vec<f32>>()
+        };
+        assert_eq!(channel("R")[3], 0.3);
+        assert_eq!(channel("Z")[0], f32::INFINITY);
+        assert_eq!(channel("normal.Y"), vec![1.0; 6]);
+        assert_eq!(channel("strand.id")[2], 70_002.0);
+        assert_eq!(layer.channel_data.list.len(), 19);
+    }
+
+    #[test]
+    fn an_unwritable_place_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = write_film_exr(folder.path(), &film(), &[]).unwrap_err();
+        assert_eq!(error.blame(), crate::blame::Blame::Environment);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

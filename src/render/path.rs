@@ -90,12 +90,18 @@ impl Integrator<'_> {
             return out;
         };
         let scatter = Scatter::new(self.scene, &ray, &hit, true, u[2]);
-        let light = self.trace(&scatter, &draws, &mut out);
-        if let (Hit::Ground(_), Some(ground)) = (&hit, &self.scene.ground) {
-            // The backdrop, times the share of its light that the subject leaves to the floor.
-            out.radiance = backdrop() * light / ground.open().max(Rgb::splat(f32::MIN_POSITIVE));
+        if let (Hit::Ground(t), Some(ground)) = (&hit, &self.scene.ground) {
+            let share = ground.shadow_share(ray.origin + *t * ray.dir);
+            out.radiance = backdrop();
+            if share > 0.0 {
+                // Times the share of its light that the subject leaves to the floor.
+                let light = self.trace(&scatter, &draws, &mut out);
+                let left = light / ground.open().max(Rgb::splat(f32::MIN_POSITIVE));
+                out.radiance *= Rgb::ONE.lerp(left, share);
+            }
             return out;
         }
+        let light = self.trace(&scatter, &draws, &mut out);
         out.radiance = light;
         out.alpha = 1.0;
         out.first = Some(self.describe(&hit, &scatter));

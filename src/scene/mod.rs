@@ -75,6 +75,9 @@ pub struct Ground {
     /// Reflectance toward the subject, 0..1.
     pub reflectance: f32,
     height: f32,
+    /// Middle of the subject, and the distance from it where the floor begins to be plain backdrop.
+    center: Vec3,
+    reach: f32,
     /// Radiance of white paint on the floor if there were no subject.
     open: Rgb,
 }
@@ -83,6 +86,13 @@ impl Ground {
     /// Radiance of white paint that sees the whole upper half of the environment.
     pub fn open(&self) -> Rgb {
         self.open
+    }
+
+    /// How much of the subject's shadow is shown at a point of the floor: 1 near, 0 far away, where
+    /// it is below a hundredth and only its noise would be seen.
+    pub fn shadow_share(&self, point: Vec3) -> f32 {
+        let t = (point.distance(self.center) / self.reach - 1.0).clamp(0.0, 1.0);
+        1.0 - t * t * (3.0 - 2.0 * t)
     }
 
     fn hit(&self, ray: &Ray, limit: f32) -> Option<f32> {
@@ -171,9 +181,13 @@ impl Scene {
         let Some(height) = points.iter().map(|p| p.y).reduce(f32::min) else {
             return Err(SceneError::Empty);
         };
+        let lo = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
+        let hi = points.iter().copied().reduce(Vec3::max).unwrap_or_default();
         scene.ground = parts.ground.map(|reflectance| Ground {
             reflectance,
             height,
+            center: 0.5 * (lo + hi),
+            reach: 1.5 * (hi - lo).length(),
             open: scene.environment.irradiance_up() / std::f32::consts::PI,
         });
         Ok(scene)
