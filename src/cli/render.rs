@@ -100,6 +100,8 @@ pub(super) struct Args {
 enum SamplerArg {
     /// Resampled products of scattering and environment.
     Qsir,
+    /// Resampled products, one ray for direct and indirect light.
+    QsirOneRay,
     /// The scattering table alone.
     Bsdf,
     /// The environment for direct light.
@@ -225,6 +227,7 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
         seed: args.seed,
         sampler: match args.sampler {
             SamplerArg::Qsir => Sampler::Qsir,
+            SamplerArg::QsirOneRay => Sampler::QsirOneRay,
             SamplerArg::Bsdf => Sampler::Bsdf,
             SamplerArg::Env => Sampler::Env,
             SamplerArg::Mis => Sampler::Mis,
@@ -333,10 +336,11 @@ fn report(film: &Film, console: &Console) {
     let report = &film.report;
     let seconds = report.elapsed.as_secs_f64();
     console.say(format!(
-        "{:.1} M samples, {:.1} M rays in {seconds:.1} s ({:.2} M rays/s)",
+        "{:.1} M samples, {:.1} M rays in {seconds:.1} s ({:.2} M rays/s), noise {:.2} %",
         report.samples as f64 / 1e6,
         report.rays as f64 / 1e6,
         report.rays as f64 / 1e6 / seconds.max(1e-9),
+        100.0 * film.noise(),
     ));
     if report.dropped > 0 || report.capped > 0 {
         console.say(format!(

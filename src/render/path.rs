@@ -5,7 +5,7 @@ use super::draws::{Draws, Purpose};
 use super::resample::{Plan, Target, resample};
 use super::scatter::{Direction, Scatter};
 use crate::color::Rgb;
-use crate::scene::{Camera, Hit, Scene};
+use crate::scene::{Camera, Ground, Hit, Scene};
 use glam::{Vec2, Vec3};
 
 /// Scattering events before roulette may end a path.
@@ -95,13 +95,13 @@ impl Integrator<'_> {
             out.radiance = backdrop();
             if share > 0.0 {
                 // Times the share of its light that the subject leaves to the floor.
-                let light = self.trace(&scatter, &draws, &mut out);
+                let light = self.trace(&scatter, Some(ground), &draws, &mut out);
                 let left = light / ground.open().max(Rgb::splat(f32::MIN_POSITIVE));
                 out.radiance *= Rgb::ONE.lerp(left, share);
             }
             return out;
         }
-        let light = self.trace(&scatter, &draws, &mut out);
+        let light = self.trace(&scatter, None, &draws, &mut out);
         out.radiance = light;
         out.alpha = 1.0;
         out.first = Some(self.describe(&hit, &scatter));
@@ -109,14 +109,26 @@ impl Integrator<'_> {
     }
 
     /// Radiance that leaves a scattering point toward the viewer.
-    fn trace(&self, first: &Scatter<'_>, draws: &Draws, out: &mut Sample) -> Rgb {
+    ///
+    /// * `floor`: the floor if the point is on it.
+    fn trace(
+        &self,
+        first: &Scatter<'_>,
+        floor: Option<&Ground>,
+        draws: &Draws,
+        out: &mut Sample,
+    ) -> Rgb {
         let environment = &self.scene.environment;
         let mut sum = Rgb::ZERO;
         let mut throughput = Rgb::ONE;
         let mut next;
         let mut scatter = first;
         for depth in 0..FAR_CAP {
-            sum += throughput * self.direct(scatter, draws, depth, out);
+            sum += throughput
+                * match floor {
+                    Some(floor) if depth == 0 => self.floor_light(floor, scatter, draws, out),
+                    _ => self.direct(scatter, draws, depth, out),
+                };
             let Some(direction) = self.continue_from(scatter, draws, depth) else {
                 return sum;
             };
@@ -131,6 +143,9 @@ impl Integrator<'_> {
             let (ray, leaving) = scatter.leave(direction.dir);
             out.rays += 1;
             let Some(hit) = self.scene.closest(&ray, leaving) else {
+                if floor.is_some() && depth == 0 {
+                    return sum;
+                }
                 let (light, light_pdf) = environment.eval(ray.dir);
                 return sum
                     + throughput * light * self.escape_weight(depth, direction.pdf, light_pdf);
@@ -189,7 +204,33 @@ impl Integrator<'_> {
                 (light.dir, density * light.radiance * (share / light.pdf))
             }
         };
-        if weight.max_element() <= 0.0 {
+        self.unless_occluded(scatter, dir, weight, out)
+    }
+
+    /// Light straight from the environment to white paint on the floor, which has no other noise
+    /// than that of visibility.
+    fn floor_light(
+        &self,
+        floor: &Ground,
+        scatter: &Scatter<'_>,
+        draws: &Draws,
+        out: &mut Sample,
+    ) -> Rgb {
+        let u = draws.point(0, Purpose::Light);
+        match floor.sample(&self.scene.environment, [u[0], u[1]]) {
+            Some((dir, light)) => self.unless_occluded(scatter, dir, light, out),
+            None => Rgb::ZERO,
+        }
+    }
+
+    fn unless_occluded(
+        &self,
+        scatter: &Scatter<'_>,
+        dir: Vec3,
+        light: Rgb,
+        out: &mut Sample,
+    ) -> Rgb {
+        if light.max_element() <= 0.0 {
             return Rgb::ZERO;
         }
         let (ray, leaving) = scatter.leave(dir);
@@ -197,7 +238,7 @@ impl Integrator<'_> {
         if self.scene.occluded(&ray, leaving) {
             Rgb::ZERO
         } else {
-            weight
+            light
         }
     }
 

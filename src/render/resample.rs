@@ -128,16 +128,23 @@ pub(super) fn resample(
     let (mut sum, mut kept) = (0.0f32, None);
     for j in 0..2 * plan.half {
         // Each half is an aligned run of its own net.
-        let dir = if j < plan.half {
+        // What the sampling of one side knows already is not looked up again.
+        let candidate = if j < plan.half {
             let u = scattering.point(draws.run(plan.half) + j);
-            scatter.sample([u[0], u[1], u[2]]).map(|s| s.dir)
+            scatter.sample([u[0], u[1], u[2]]).map(|s| {
+                let (light, light_pdf) = environment.eval(s.dir);
+                (s.dir, s.weight * s.pdf, s.pdf, light, light_pdf)
+            })
         } else {
             let u = lights.point(draws.run(plan.half) + j - plan.half);
-            environment.sample([u[0], u[1]]).map(|s| s.dir)
+            environment.sample([u[0], u[1]]).map(|s| {
+                let (density, scatter_pdf) = scatter.eval(s.dir);
+                (s.dir, density, scatter_pdf, s.radiance, s.pdf)
+            })
         };
-        let Some(dir) = dir else { continue };
-        let (density, scatter_pdf) = scatter.eval(dir);
-        let (light, light_pdf) = environment.eval(dir);
+        let Some((dir, density, scatter_pdf, light, light_pdf)) = candidate else {
+            continue;
+        };
         let value = target.value(luminance(density), luminance(light));
         let weight = value / plan.density(scatter_pdf, light_pdf);
         // Also drops NaN.

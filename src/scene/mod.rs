@@ -70,7 +70,7 @@ impl Backdrop {
 
 /// A level floor under the subject. The camera sees the backdrop on it, darkened where the subject
 /// takes light away, so that floor and backdrop join without a seam; other rays see matte paint.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Ground {
     /// Reflectance toward the subject, 0..1.
     pub reflectance: f32,
@@ -80,9 +80,24 @@ pub struct Ground {
     reach: f32,
     /// Radiance of white paint on the floor if there were no subject.
     open: Rgb,
+    /// The environment times cosine, to draw directions from.
+    light: Environment,
 }
 
 impl Ground {
+    /// Draws a direction by the product of environment and cosine; gives it and the radiance that
+    /// white paint sends on by it, nearly the same ([`Ground::open`]) for all. `None` in the dark.
+    ///
+    /// * `environment`: the one the scene was built with.
+    pub fn sample(&self, environment: &Environment, u: [f32; 2]) -> Option<(Vec3, Rgb)> {
+        let sample = self.light.sample(u)?;
+        let cos = sample.dir.y.max(0.0) * std::f32::consts::FRAC_1_PI;
+        Some((
+            sample.dir,
+            environment.eval(sample.dir).0 * (cos / sample.pdf),
+        ))
+    }
+
     /// Radiance of white paint that sees the whole upper half of the environment.
     pub fn open(&self) -> Rgb {
         self.open
@@ -189,6 +204,7 @@ impl Scene {
             center: 0.5 * (lo + hi),
             reach: 1.5 * (hi - lo).length(),
             open: scene.environment.irradiance_up() / std::f32::consts::PI,
+            light: scene.environment.above_horizon(),
         });
         Ok(scene)
     }

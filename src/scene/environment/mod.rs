@@ -122,6 +122,22 @@ impl Environment {
         sum.as_vec3()
     }
 
+    /// This light weighted with its height above the horizon, which is what a level plane sees of
+    /// it: sampling it draws directions by the product of light and cosine.
+    pub fn above_horizon(&self) -> Self {
+        let mut texels = self.texels.clone();
+        for (y, row) in texels.chunks_exact_mut(self.width).enumerate() {
+            let (top, bottom) = (edge(y, self.height), edge(y + 1, self.height));
+            let (above, over) = (top.max(0.0), bottom.max(0.0));
+            let mean = 0.5 * (above * above - over * over) / (top - bottom);
+            row.iter_mut().for_each(|texel| *texel *= mean as f32);
+        }
+        Self {
+            turn: self.turn,
+            ..Self::from_texels(self.width, self.height, texels)
+        }
+    }
+
     /// Radiance from a unit direction and the density with which [`Environment::sample`] draws it.
     pub fn eval(&self, dir: Vec3) -> (Rgb, f32) {
         let (x, y) = self.locate(dir);
