@@ -22,11 +22,12 @@ pub(super) struct Turn {
 /// Smooth boundary: Fresnel decides by one random number.
 ///
 /// * `n`: unit normal against the ray. * `eta`: far index over near index.
+#[inline]
 pub(super) fn smooth(dir: DVec3, n: DVec3, eta: f64, rng: &mut Rng) -> Turn {
     let (reflectance, cos_t) = fresnel::dielectric((-dir.dot(n)).clamp(0.0, 1.0), eta);
     if rng.uniform() < reflectance {
         Turn {
-            dir: fresnel::reflect(dir, n).normalize(),
+            dir: fresnel::renormalize(fresnel::reflect(dir, n)),
             transmitted: false,
         }
     } else {
@@ -43,66 +44,127 @@ pub(super) fn rough(dir: DVec3, n: DVec3, eta: f64, alpha: f64, rng: &mut Rng) -
     let (tangent, bitangent) = n.any_orthonormal_pair();
     let mut d = DVec3::new(dir.dot(tangent), dir.dot(bitangent), dir.dot(n));
     let mut above = true;
-    let mut height = TOP;
+    let mut depth = Depth::from_share(TOP);
     for _ in 0..MAX_STEPS {
         // Below the surface the same walk runs upside down.
-        height = if above {
-            free_height(d, height, alpha, rng.uniform())
-        } else {
-            -free_height(-d, -height, alpha, rng.uniform())
-        };
-        if height.abs() == f64::INFINITY {
-            let dir = (d.x * tangent + d.y * bitangent + d.z * n).normalize();
+        let up = if above { d } else { -d };
+        let Some(met) = depth.free(up, alpha, rng.uniform()) else {
+            let dir = fresnel::renormalize(d.x * tangent + d.y * bitangent + d.z * n);
             return Some(Turn {
                 dir,
                 transmitted: !above,
             });
-        }
+        };
+        depth = met;
         let side = if above { 1.0 } else { -1.0 };
         let ratio = if above { eta } else { 1.0 / eta };
         let m = side * visible_normal(-side * d, alpha, rng);
         let turn = smooth(d, m, ratio, rng);
         d = turn.dir;
-        above ^= turn.transmitted;
+        if turn.transmitted {
+            above = !above;
+            depth = depth.turned();
+        }
     }
     None
 }
 
-/// Heights are uniform in [-1, 1]; the walk starts just below the top.
-const TOP: f64 = 0.998;
+/// Heights are uniform; the walk starts where this share of the surface lies below.
+const TOP: f64 = 0.999;
 
 /// A walk of this length does not happen: each step escapes with a probability near a half.
 const MAX_STEPS: usize = 256;
 
-/// The height at which a ray on the microsurface meets it next; infinite if it gets away.
-fn free_height(d: DVec3, height: f64, alpha: f64, u: f64) -> f64 {
-    if d.z > 0.9999 {
-        return f64::INFINITY;
-    }
-    let below = |h: f64| (0.5 * (h + 1.0)).clamp(0.0, 1.0);
-    let at = |share: f64| (2.0 * share - 1.0).clamp(-1.0, 1.0);
-    if d.z < -0.9999 {
-        return at(u * below(height));
-    }
-    if d.z.abs() < 1e-4 {
-        return height;
-    }
-    let lambda = lambda(d, alpha);
-    let escape = if d.z > 0.0 {
-        below(height).powf(lambda)
-    } else {
-        0.0
-    };
-    if u > 1.0 - escape {
-        return f64::INFINITY;
-    }
-    at(below(height) / (1.0 - u).powf(1.0 / lambda))
+/// How deep in the microsurface a walk is: the share of the surface that lies below (behind, once
+/// it is upside down), `top * base^exponent` or one minus that. Nearly all walks are decided by
+/// bounds of the power (Bernoulli's inequality); it is computed only for the others.
+#[derive(Clone, Copy)]
+struct Depth {
+    top: f64,
+    base: f64,
+    /// In 0..=1.
+    exponent: f64,
+    flipped: bool,
 }
 
-/// Smith's Lambda of GGX; negative for directions that point down.
+impl Depth {
+    fn from_share(share: f64) -> Self {
+        Self {
+            top: share,
+            base: 1.0,
+            exponent: 1.0,
+            flipped: false,
+        }
+    }
+
+    /// The same place seen from the other side of the surface.
+    fn turned(self) -> Self {
+        Self {
+            flipped: !self.flipped,
+            ..self
+        }
+    }
+
+    /// The share below.
+    fn share(self) -> f64 {
+        let share = self.top * self.base.powf(self.exponent);
+        if self.flipped { 1.0 - share } else { share }
+    }
+
+    /// No more than the share below.
+    fn least_share(self) -> f64 {
+        if self.flipped {
+            1.0 - self.top * (1.0 - self.exponent * (1.0 - self.base))
+        } else {
+            self.top * self.base
+        }
+    }
+
+    /// Where a ray on the microsurface meets it next; `None` if it gets away. `u`: uniform in 0..1.
+    fn free(self, d: DVec3, alpha: f64, u: f64) -> Option<Self> {
+        if d.z > 0.9999 {
+            return None;
+        }
+        if d.z < -0.9999 {
+            return Some(Self::from_share(u * self.share()));
+        }
+        if d.z.abs() < 1e-4 {
+            return Some(self);
+        }
+        let lambda = lambda(d, alpha);
+        if d.z > 0.0 {
+            // It escapes if 1 - u < share^lambda, which is at least 1 - lambda (1 / share - 1).
+            let least = self.least_share();
+            if u * least > lambda * (1.0 - least) {
+                return None;
+            }
+            let share = self.share();
+            if 1.0 - u < share.powf(lambda) {
+                return None;
+            }
+            return Some(Self::from_share(
+                (share / (1.0 - u).powf(1.0 / lambda)).min(1.0),
+            ));
+        }
+        // Downward lambda is -1 or less: a power with an exponent between 0 and 1.
+        Some(Self {
+            top: if self.base == 1.0 && !self.flipped {
+                self.top
+            } else {
+                self.share()
+            },
+            base: 1.0 - u,
+            exponent: -1.0 / lambda,
+            flipped: false,
+        })
+    }
+}
+
+/// Smith's Lambda of GGX; negative for directions that point down. `d.z` is not 0.
+#[inline]
 fn lambda(d: DVec3, alpha: f64) -> f64 {
-    let a = d.z / (alpha * d.x.hypot(d.y));
-    0.5 * (-1.0 + a.signum() * (1.0 + 1.0 / (a * a)).sqrt())
+    let slope2 = alpha * alpha * (d.x * d.x + d.y * d.y) / (d.z * d.z);
+    0.5 * ((1.0 + slope2).sqrt().copysign(d.z) - 1.0)
 }
 
 /// A microfacet normal visible from `w` (which may point below the horizon).

@@ -97,6 +97,8 @@ pub struct Fiber {
     surface: Surface,
     medulla: Medulla,
     period_um: f64,
+    /// Indexed by region.
+    media: [Medium; 4],
 }
 
 impl Fiber {
@@ -134,6 +136,7 @@ impl Fiber {
             surface,
             medulla,
             period_um,
+            media: media(structure),
         })
     }
 
@@ -175,33 +178,9 @@ impl Fiber {
     }
 
     /// Properties of a region.
-    pub fn medium(&self, region: Region) -> Medium {
-        let medulla = &self.structure.medulla;
-        let clear = |ior, pigment| Medium {
-            ior,
-            pigment,
-            scattering_per_um: 0.0,
-            asymmetry: 0.0,
-        };
-        match region {
-            Region::Outside => clear(1.0, 0.0),
-            Region::Cortex => clear(self.structure.ior, 1.0),
-            Region::Void => clear(medulla.void_ior, 0.0),
-            Region::Medulla => {
-                let (scattering_per_um, asymmetry) = match medulla.kind {
-                    MedullaKind::Medium {
-                        scattering_per_um,
-                        asymmetry,
-                    } => (scattering_per_um, asymmetry),
-                    _ => (0.0, 0.0),
-                };
-                Medium {
-                    scattering_per_um,
-                    asymmetry,
-                    ..clear(self.structure.ior, medulla.pigment)
-                }
-            }
-        }
+    #[inline]
+    pub fn medium(&self, region: Region) -> &Medium {
+        &self.media[region as usize]
     }
 
     /// The region that holds a point, found from the shapes alone, without any ray.
@@ -359,4 +338,32 @@ impl Fiber {
             state: HitState { element },
         }
     }
+}
+
+/// The media of the regions, in their order.
+fn media(structure: &Structure) -> [Medium; 4] {
+    let medulla = &structure.medulla;
+    let clear = |ior, pigment| Medium {
+        ior,
+        pigment,
+        scattering_per_um: 0.0,
+        asymmetry: 0.0,
+    };
+    let (scattering_per_um, asymmetry) = match medulla.kind {
+        MedullaKind::Medium {
+            scattering_per_um,
+            asymmetry,
+        } => (scattering_per_um, asymmetry),
+        _ => (0.0, 0.0),
+    };
+    [
+        clear(1.0, 0.0),
+        clear(structure.ior, 1.0),
+        Medium {
+            scattering_per_um,
+            asymmetry,
+            ..clear(structure.ior, medulla.pigment)
+        },
+        clear(medulla.void_ior, 0.0),
+    ]
 }

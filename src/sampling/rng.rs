@@ -1,6 +1,7 @@
 //! A counter-based generator: the stream is a hash of (seed, index), then PCG steps.
 
 /// Mixes 64 bits into 64 well distributed bits (the finalizer of SplitMix64, Steele et al. 2014).
+#[inline]
 pub fn hash64(x: u64) -> u64 {
     let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -16,6 +17,7 @@ pub struct Rng {
 
 impl Rng {
     /// The stream of item `index` under `seed`; streams of different pairs are independent.
+    #[inline]
     pub fn new(seed: u64, index: u64) -> Self {
         let a = hash64(seed.wrapping_add(0x9e37_79b9_7f4a_7c15));
         let b = hash64(index.wrapping_add(a));
@@ -26,6 +28,7 @@ impl Rng {
     }
 
     /// 32 uniform bits.
+    #[inline]
     pub fn bits(&mut self) -> u32 {
         let old = self.state;
         self.state = old
@@ -36,11 +39,13 @@ impl Rng {
     }
 
     /// Uniform in `[0, 1)` with 32 bits of resolution.
+    #[inline]
     pub fn uniform(&mut self) -> f64 {
         f64::from(self.bits()) * (1.0 / 4_294_967_296.0)
     }
 
     /// Uniform in `[0, 1)`, never rounding up to 1 in single precision.
+    #[inline]
     pub fn uniform_f32(&mut self) -> f32 {
         (self.bits() >> 8) as f32 * (1.0 / 16_777_216.0)
     }
