@@ -176,7 +176,7 @@ impl Puck {
     /// Value and slope of the level along the ray, a convex quartic.
     fn along(&self, ray: &UnitRay, center: f64) -> impl Fn(f64) -> (f64, f64) {
         let i = 1.0 / (self.radius * self.radius);
-        let [a, b, c] = ray.radius_squared().map(|q| q * i);
+        let (a, b, c) = (i * ray.a, i * ray.b, i * ray.c);
         let (z, dz) = ((ray.z - center) / self.half, ray.dz / self.half);
         move |t| {
             let q = c + t * (2.0 * b + t * a);

@@ -50,6 +50,11 @@ pub(super) enum March {
 const MAX_CELLS: usize = 20_000;
 /// Convergence of a hit, in units of the radius over the ray's radial speed.
 const TOLERANCE: f64 = 1e-12;
+/// A step this small, in the same units, is the last of the secants: the next would be smaller by
+/// the share that the slope is off, a thousandth and less.
+const LAST_STEP: f64 = 1e-9;
+/// f is known to some roundings of its terms, which are about 1.
+const ROUNDING: f64 = 5e-16;
 /// Stands for an endless way where infinity would give NaN.
 const AXIAL: f64 = 1e100;
 
@@ -145,15 +150,17 @@ impl<'a> Window<'a> {
         }
     }
 
-    /// `1 + E` at `t`.
+    /// Position between the half planes at `t`.
     #[inline]
-    fn radius(&self, t: f64) -> f64 {
+    fn across(&self, t: f64) -> f64 {
         let (a, b) = (self.a + t * self.da, self.b + t * self.db);
-        let z = self.z + t * self.dz;
-        let s = self.strip;
-        let e0 = s.height[0] + s.slope[0] * z;
-        let e1 = s.height[1] + s.slope[1] * z;
-        1.0 + (e0 * b + e1 * a) / (a + b)
+        a / (a + b)
+    }
+
+    /// `1 + E` at `t`, where the ray is at `u` between the half planes.
+    #[inline]
+    fn radius(&self, u: f64, t: f64) -> f64 {
+        1.0 + self.strip.height_at(u, self.z + t * self.dz)
     }
 
     /// How far the ray stays in the cell and where it leaves.
@@ -214,7 +221,6 @@ impl Scales {
         // Positive outside, so that `sign * f` is positive on the ray's side.
         let sign = if side == Side::Outside { 1.0 } else { -1.0 };
         let turn = ray.x * ray.dy - ray.y * ray.dx;
-        let [c2, ..] = ray.radius_squared();
         let mut p = ray.at(t);
         let mut c0 = p.x * p.x + p.y * p.y;
         // 1 + E at the start of the cell; on the surface it is the radius itself.
@@ -237,21 +243,24 @@ impl Scales {
             }
             let end = ray.at(t + length);
             let c_end = end.x * end.x + end.y * end.y;
-            let r1 = window.radius(length);
+            let u1 = window.across(length);
+            let on_face = on == StartOn::Face;
             let crossing = Crossing {
                 window: &window,
+                sign,
+                length,
                 r0,
-                c: if on == StartOn::Face {
+                r1: window.radius(u1, length),
+                rho2: c0,
+                c: if on_face {
                     0.0
                 } else {
                     (sign * (c0 - r0 * r0)).max(0.0)
                 },
-                c1: p.x * ray.dx + p.y * ray.dy,
-                c2,
-                sign,
+                c1: (p.x * ray.dx + p.y * ray.dy) * length,
+                c2: ray.a * (length * length),
             };
-            let on_face = on == StartOn::Face;
-            if let Some(tau) = crossing.first(length, r1, sign * (c_end - r1 * r1), on_face) {
+            if let Some(tau) = crossing.first(c_end, on_face) {
                 let hit = ray.at(t + tau);
                 return March::Face {
                     t: t + tau,
@@ -264,8 +273,9 @@ impl Scales {
             }
             (t, p, c0) = (t + length, end, c_end);
             let old = cell;
-            (cell, on) = self.step(cell, exit, p.z);
-            r0 = self.radius(cell, self.across(cell.sector, p.x, p.y), p.z);
+            let u;
+            (cell, on, u) = self.step(cell, exit, p.z, u1);
+            r0 = self.radius(cell, u, p.z);
             if sign * (c0 - r0 * r0) < 0.0 {
                 return self.step_hit(t, p, old, cell, exit, side);
             }
@@ -273,28 +283,22 @@ impl Scales {
         March::Lost
     }
 
-    /// The cell behind an exit.
+    /// The cell behind an exit, what of it the ray starts on and its position across it.
     #[inline]
-    fn step(&self, cell: Cell, exit: Exit, z: f64) -> (Cell, StartOn) {
-        match exit {
-            Exit::Limit => (cell, StartOn::Nothing),
-            Exit::Up => (self.above(cell), StartOn::Lower),
-            Exit::Down => (self.below(cell), StartOn::Upper),
-            Exit::NextSector | Exit::PreviousSector => {
-                let (sector, u) = if exit == Exit::NextSector {
-                    (self.next_sector(cell.sector), 0.0)
-                } else {
-                    (self.previous_sector(cell.sector), 1.0)
-                };
-                let strip = cell.strip.min(self.count(sector) - 1);
-                let near = Cell {
-                    sector,
-                    strip,
-                    ..cell
-                };
-                (self.settle(near, u, z), StartOn::Nothing)
-            }
-        }
+    fn step(&self, cell: Cell, exit: Exit, z: f64, u: f64) -> (Cell, StartOn, f64) {
+        let (sector, u) = match exit {
+            Exit::Limit => return (cell, StartOn::Nothing, u),
+            Exit::Up => return (self.above(cell), StartOn::Lower, u),
+            Exit::Down => return (self.below(cell), StartOn::Upper, u),
+            Exit::NextSector => (self.next_sector(cell.sector), 0.0),
+            Exit::PreviousSector => (self.previous_sector(cell.sector), 1.0),
+        };
+        let near = Cell {
+            sector,
+            strip: cell.strip.min(self.count(sector) - 1),
+            ..cell
+        };
+        (self.settle(near, u, z), StartOn::Nothing, u)
     }
 
     /// The surface between two cells is crossed on their common boundary.
@@ -323,76 +327,127 @@ impl Scales {
     }
 }
 
-/// `f = rho^2 - (1 + E)^2` along the ray in one cell.
+/// `f = rho^2 - (1 + E)^2` along the ray in one cell; the ray's parameter x runs from 0 to 1 in it.
 struct Crossing<'a> {
     window: &'a Window<'a>,
-    /// `1 + E` and signed f at the start.
+    sign: f64,
+    /// The way through the cell, micrometers.
+    length: f64,
+    /// `1 + E` at both ends.
     r0: f64,
+    r1: f64,
+    /// rho^2 and signed f at the start.
+    rho2: f64,
     c: f64,
-    /// Coefficients of rho^2.
+    /// Coefficients of `rho^2 = rho2 + 2 c1 x + c2 x^2`.
     c1: f64,
     c2: f64,
-    sign: f64,
 }
 
 impl Crossing<'_> {
-    /// First crossing in `0..=length`.
+    /// First crossing, as way from the cell's start.
     ///
-    /// * `r1`: `1 + E` at the end; `f1`: signed f at the end, negative if the side has changed.
+    /// * `c_end`: rho^2 at the end.
     ///
-    /// With E replaced by its chord f is a quadratic with exact values at both ends. Its root is
-    /// refined by chords from the start to the last estimate: E is so nearly linear in a cell that
-    /// each pass wins many digits.
+    /// With E replaced by its chord f is a quadratic with exact values at both ends. Its root starts
+    /// the search: E is so nearly linear in a cell that each pass wins many digits.
     #[inline]
-    fn first(&self, length: f64, r1: f64, f1: f64, on_face: bool) -> Option<f64> {
-        let odd = f1 < 0.0;
+    fn first(&self, c_end: f64, on_face: bool) -> Option<f64> {
+        let odd = self.sign * (c_end - self.r1 * self.r1) < 0.0;
         if !odd && on_face {
             return None;
         }
-        if length <= 0.0 {
+        if self.length <= 0.0 {
             return odd.then_some(0.0);
         }
-        let q = self.chord(length, r1);
-        let pair = || q.a > 0.0 && q.b < 0.0 && -q.b < length * q.a && q.b * q.b > q.a * q.c;
-        (odd || pair()).then(|| self.refine(q, length))
+        let q = self.chord(self.r1 - self.r0);
+        let pair = || q.b < 0.0 && -q.b < q.a && q.b * q.b > q.a * q.c;
+        (odd || pair()).then(|| self.length * self.refine(q))
     }
 
-    /// f with E replaced by the chord to `1 + E = r` at `t`.
+    /// f with E replaced by the chord that rises by `rise` over the cell.
     #[inline]
-    fn chord(&self, t: f64, r: f64) -> Quadratic {
-        let k = (r - self.r0) / t;
+    fn chord(&self, rise: f64) -> Quadratic {
         Quadratic {
-            a: self.sign * (self.c2 - k * k),
-            b: self.sign * (self.c1 - self.r0 * k),
+            a: self.sign * (self.c2 - rise * rise),
+            b: self.sign * (self.c1 - self.r0 * rise),
             c: self.c,
         }
     }
 
+    #[inline]
     fn root(&self, q: Quadratic) -> f64 {
-        if self.c > 0.0 {
+        let x = if self.c > 0.0 {
             q.falling_root()
         } else if q.b > 0.0 && q.a < 0.0 {
             -2.0 * q.b / q.a
         } else {
             0.0
-        }
+        };
+        x.clamp(0.0, 1.0)
     }
 
-    fn refine(&self, q: Quadratic, length: f64) -> f64 {
-        let mut t = self.root(q).clamp(0.0, length);
+    #[inline]
+    fn radius(&self, x: f64) -> f64 {
+        let t = x * self.length;
+        self.window.radius(self.window.across(t), t)
+    }
+
+    /// Signed f.
+    #[inline]
+    fn at(&self, x: f64) -> f64 {
+        let r = self.radius(x);
+        self.sign * (self.rho2 + x * (2.0 * self.c1 + x * self.c2) - r * r)
+    }
+
+    #[inline]
+    fn refine(&self, q: Quadratic) -> f64 {
+        let x = self.root(q);
+        // The slope of the chord's quadratic serves the first step, secants the others.
+        self.secant(x, 2.0 * (q.b + q.a * x))
+            .unwrap_or_else(|| self.chords(x))
+    }
+
+    /// Secants from `x`, where f has about `slope`. `None` where they do not converge at once: at
+    /// grazing rays, where f has two near roots.
+    #[inline]
+    fn secant(&self, mut x: f64, mut slope: f64) -> Option<f64> {
+        let mut f = self.at(x);
+        let mut last = 0.5;
+        for _ in 0..4 {
+            if f.abs() <= ROUNDING {
+                return Some(x);
+            }
+            let move_by = -f / slope;
+            let next = x + move_by;
+            // Written so that NaN fails too.
+            if !(slope < 0.0 && move_by.abs() <= 0.1 * last && (0.0..=1.0).contains(&next)) {
+                return None;
+            }
+            if move_by * move_by * self.c2 <= LAST_STEP * LAST_STEP {
+                return Some(next);
+            }
+            let value = self.at(next);
+            slope = (value - f) / (next - x);
+            (x, f, last) = (next, value, move_by.abs());
+        }
+        None
+    }
+
+    /// Roots of chords from the start to the last estimate: slower, and sure.
+    #[cold]
+    fn chords(&self, mut x: f64) -> f64 {
         for _ in 0..8 {
-            if t <= 0.0 {
+            if x <= 0.0 {
                 break;
             }
-            let next = self
-                .root(self.chord(t, self.window.radius(t)))
-                .clamp(0.0, length);
-            let moved = (next - t).abs();
-            t = next;
+            let next = self.root(self.chord((self.radius(x) - self.r0) / x));
+            let moved = (next - x).abs();
+            x = next;
             if moved * moved * self.c2 <= TOLERANCE * TOLERANCE {
                 break;
             }
         }
-        t
+        x
     }
 }

@@ -27,7 +27,7 @@ use glam::DVec3;
 use medulla::{Medulla, Rays};
 use pattern::Pattern;
 use scales::Scales;
-use section::Section;
+use section::{Section, UnitRay};
 use surface::{Inward, OuterHit, OuterState, Surface};
 
 /// What fills the space between boundaries.
@@ -224,7 +224,7 @@ impl Fiber {
         let mut hit = match region {
             Region::Outside if from.is_none() => {
                 // Far origins cost digits: start beside the axis, on the way in.
-                let [a, b, _] = rays.unit.radius_squared();
+                let UnitRay { a, b, .. } = rays.unit;
                 let ahead = if a > 0.0 { (-b / a).max(0.0) } else { 0.0 };
                 let ahead = (ahead - 2.0 * self.surface.rho_max() / a.sqrt()).max(0.0);
                 let mut hit = self.enter(origin + ahead * dir, dir, None)?;
@@ -292,7 +292,7 @@ impl Fiber {
 
     /// Where a ray inside a homogeneous medulla leaves it.
     fn outline_from_inside(&self, rays: &Rays, from: Option<Element>) -> Option<Hit> {
-        let [a, b, c] = rays.unit.radius_squared();
+        let UnitRay { a, b, c, .. } = rays.unit;
         let t = if from == Some(Element::Outline) {
             -2.0 * b / a
         } else {

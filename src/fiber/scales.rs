@@ -25,6 +25,16 @@ pub(super) struct Strip {
     pub(super) slope: [f64; 2],
 }
 
+impl Strip {
+    /// E at `u` and `z`.
+    #[inline]
+    pub(super) fn height_at(&self, u: f64, z: f64) -> f64 {
+        let e0 = self.height[0] + self.slope[0] * z;
+        let e1 = self.height[1] + self.slope[1] * z;
+        e0 + u * (e1 - e0)
+    }
+}
+
 /// A half plane from the axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
@@ -222,11 +232,7 @@ impl Scales {
     /// `1 + E` of a cell at `u` and the ray's `z`.
     #[inline]
     pub(super) fn radius(&self, cell: Cell, u: f64, z: f64) -> f64 {
-        let s = self.strip(cell);
-        let z = z - cell.shift;
-        let e0 = s.height[0] + s.slope[0] * z;
-        let e1 = s.height[1] + s.slope[1] * z;
-        1.0 + e0 + u * (e1 - e0)
+        1.0 + self.strip(cell).height_at(u, z - cell.shift)
     }
 
     /// Whether a point is inside the surface.

@@ -23,6 +23,11 @@ pub(super) struct UnitRay {
     pub(super) dx: f64,
     pub(super) dy: f64,
     pub(super) dz: f64,
+    /// Coefficients of `rho^2 = c + 2 b t + a t^2`, and the inverse of a.
+    pub(super) a: f64,
+    pub(super) b: f64,
+    pub(super) c: f64,
+    inverse_a: f64,
 }
 
 /// A line on the surface along which the scale heights are given: an axial half plane.
@@ -54,13 +59,20 @@ impl Section {
     #[inline]
     pub(super) fn unit_ray(&self, origin: DVec3, dir: DVec3) -> UnitRay {
         let [ia, ib] = self.inverse;
+        let (x, y) = (origin.x * ia, origin.y * ib);
+        let (dx, dy) = (dir.x * ia, dir.y * ib);
+        let a = dx * dx + dy * dy;
         UnitRay {
-            x: origin.x * ia,
-            y: origin.y * ib,
+            x,
+            y,
             z: origin.z,
-            dx: dir.x * ia,
-            dy: dir.y * ib,
+            dx,
+            dy,
             dz: dir.z,
+            a,
+            b: x * dx + y * dy,
+            c: x * x + y * y,
+            inverse_a: 1.0 / a,
         }
     }
 
@@ -71,6 +83,7 @@ impl Section {
     }
 
     /// The unit normal that belongs to a gradient in the unit-circle frame, turned against `dir`.
+    #[inline]
     pub(super) fn normal_against(&self, gradient: DVec3, dir: DVec3) -> DVec3 {
         let [ia, ib] = self.inverse;
         let n = DVec3::new(gradient.x * ia, gradient.y * ib, gradient.z);
@@ -125,22 +138,11 @@ impl Section {
 }
 
 impl UnitRay {
-    /// Coefficients of `rho^2 = c + 2 b t + a t^2`, as `[a, b, c]`.
-    #[inline]
-    pub(super) fn radius_squared(&self) -> [f64; 3] {
-        [
-            self.dx * self.dx + self.dy * self.dy,
-            self.x * self.dx + self.y * self.dy,
-            self.x * self.x + self.y * self.y,
-        ]
-    }
-
     /// Where the ray's line is inside the circle of radius `r`: `(enter, leave)`. An axial ray inside
     /// stays for ever.
     #[inline]
     pub(super) fn inside_circle(&self, r: f64) -> Option<(f64, f64)> {
-        let [a, b, c] = self.radius_squared();
-        let c = c - r * r;
+        let (a, b, c) = (self.a, self.b, self.c - r * r);
         if a < 1e-30 {
             return (c < 0.0).then_some((f64::NEG_INFINITY, f64::INFINITY));
         }
@@ -152,10 +154,10 @@ impl UnitRay {
         // The sum of equal signs loses no digits; the other root follows from their product.
         Some(if b > 0.0 {
             let q = -b - root;
-            (q / a, c / q)
+            (q * self.inverse_a, c / q)
         } else {
             let q = root - b;
-            (c / q, q / a)
+            (c / q, q * self.inverse_a)
         })
     }
 

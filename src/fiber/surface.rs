@@ -123,7 +123,7 @@ fn leave_smooth<T>(
     from: Option<OuterState>,
     core: impl FnOnce(f64, f64) -> Option<T>,
 ) -> Inward<T> {
-    let [a, b, c] = ray.radius_squared();
+    let UnitRay { a, b, c, .. } = *ray;
     if a < 1e-30 {
         return core(0.0, f64::INFINITY).map_or(Inward::Lost, Inward::Core);
     }
@@ -199,9 +199,8 @@ impl Scales {
             let outer = ray.inside_circle(self.rho_max);
             outer.map_or(0.0, |(_, t1)| t1.max(0.0))
         };
-        let [.., c] = ray.radius_squared();
         // In the shell first, unless the ray starts within all scales.
-        if c >= self.rho_min * self.rho_min || inner.is_none() {
+        if ray.c >= self.rho_min * self.rho_min || inner.is_none() {
             let (cell, on) = self.start(ray, 0.0, from, Side::Inside);
             let limit = inner.map_or_else(leave, |(t0, _)| t0.max(0.0));
             match self.march(ray, 0.0, cell, Side::Inside, on, limit) {
