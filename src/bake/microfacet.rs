@@ -19,28 +19,48 @@ pub(super) struct Turn {
     pub transmitted: bool,
 }
 
+/// The indices on both sides of a boundary.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ratio {
+    /// Far index over near index.
+    pub eta: f64,
+    /// Near index over far index.
+    pub inverse: f64,
+}
+
+impl Ratio {
+    /// The boundary seen from the other side.
+    #[inline]
+    fn turned(self) -> Self {
+        Self {
+            eta: self.inverse,
+            inverse: self.eta,
+        }
+    }
+}
+
 /// Smooth boundary: Fresnel decides by one random number.
 ///
-/// * `n`: unit normal against the ray. * `eta`: far index over near index.
+/// * `n`: unit normal against the ray.
 #[inline]
-pub(super) fn smooth(dir: DVec3, n: DVec3, eta: f64, rng: &mut Rng) -> Turn {
-    let (reflectance, cos_t) = fresnel::dielectric((-dir.dot(n)).clamp(0.0, 1.0), eta);
-    if rng.uniform() < reflectance {
-        Turn {
-            dir: fresnel::renormalize(fresnel::reflect(dir, n)),
-            transmitted: false,
-        }
+pub(super) fn smooth(dir: DVec3, n: DVec3, ratio: Ratio, rng: &mut Rng) -> Turn {
+    let Ratio { eta, inverse } = ratio;
+    let cos_i = (-dir.dot(n)).clamp(0.0, 1.0);
+    let (reflected, cos_t) = fresnel::reflects(cos_i, eta, inverse, rng.uniform());
+    let turned = if reflected {
+        fresnel::renormalize(fresnel::reflect(dir, n))
     } else {
-        Turn {
-            dir: fresnel::refract(dir, n, eta, cos_t),
-            transmitted: true,
-        }
+        fresnel::refract_by(dir, n, inverse, cos_t)
+    };
+    Turn {
+        dir: turned,
+        transmitted: !reflected,
     }
 }
 
 /// Rough boundary with GGX roughness `alpha` > 0. `None` if the walk does not end (not seen; the
 /// caller counts it as lost).
-pub(super) fn rough(dir: DVec3, n: DVec3, eta: f64, alpha: f64, rng: &mut Rng) -> Option<Turn> {
+pub(super) fn rough(dir: DVec3, n: DVec3, ratio: Ratio, alpha: f64, rng: &mut Rng) -> Option<Turn> {
     let (tangent, bitangent) = n.any_orthonormal_pair();
     let mut d = DVec3::new(dir.dot(tangent), dir.dot(bitangent), dir.dot(n));
     let mut above = true;
@@ -57,7 +77,7 @@ pub(super) fn rough(dir: DVec3, n: DVec3, eta: f64, alpha: f64, rng: &mut Rng) -
         };
         depth = met;
         let side = if above { 1.0 } else { -1.0 };
-        let ratio = if above { eta } else { 1.0 / eta };
+        let ratio = if above { ratio } else { ratio.turned() };
         let m = side * visible_normal(-side * d, alpha, rng);
         let turn = smooth(d, m, ratio, rng);
         d = turn.dir;
@@ -185,6 +205,13 @@ mod tests {
         DVec3::new(theta.sin(), 0.0, -theta.cos())
     }
 
+    fn ratio(eta: f64) -> Ratio {
+        Ratio {
+            eta,
+            inverse: 1.0 / eta,
+        }
+    }
+
     #[test]
     fn every_photon_leaves_on_the_side_it_says() {
         let mut rng = Rng::new(1, 0);
@@ -192,7 +219,7 @@ mod tests {
             for eta in [1.55, 1.0 / 1.55] {
                 for i in 0..20_000 {
                     let dir = from_angle(1.57 * f64::from(i) / 20_000.0);
-                    let turn = rough(dir, DVec3::Z, eta, alpha, &mut rng).unwrap();
+                    let turn = rough(dir, DVec3::Z, ratio(eta), alpha, &mut rng).unwrap();
                     assert_eq!(turn.dir.z < 0.0, turn.transmitted);
                     assert!((turn.dir.length() - 1.0).abs() < 1e-12);
                 }
@@ -208,7 +235,7 @@ mod tests {
         let n = 200_000;
         let (mut reflected, mut astray) = (0, 0);
         for _ in 0..n {
-            let turn = rough(dir, DVec3::Z, 1.55, 0.001, &mut rng).unwrap();
+            let turn = rough(dir, DVec3::Z, ratio(1.55), 0.001, &mut rng).unwrap();
             if !turn.transmitted {
                 reflected += 1;
                 let mirror = fresnel::reflect(dir, DVec3::Z);
@@ -232,7 +259,7 @@ mod tests {
             let n = 400_000;
             let hits = (0..n)
                 .filter(|_| {
-                    let turn = rough(from_angle(-from), DVec3::Z, 1.55, alpha, &mut rng);
+                    let turn = rough(from_angle(-from), DVec3::Z, ratio(1.55), alpha, &mut rng);
                     turn.is_some_and(|t| !t.transmitted && t.dir.dot(target) > 0.97)
                 })
                 .count();

@@ -87,16 +87,19 @@ pub fn fly(fiber: &Fiber, photon: &Photon, max_events: u32) -> Flight {
     let mut region = Region::Outside;
     loop {
         // At a boundary: go through or turn back.
-        let eta = fiber.medium(hit.to).ior / fiber.medium(region).ior;
+        let ratio = microfacet::Ratio {
+            eta: fiber.eta(region, hit.to),
+            inverse: fiber.eta(hit.to, region),
+        };
         let mut from = Some(hit.state);
-        if eta == 1.0 {
+        if ratio.eta == 1.0 {
             region = hit.to;
         } else {
             flight.events += 1;
             let turned = if hit.roughness > 0.0 {
-                microfacet::rough(dir, hit.normal, eta, hit.roughness, &mut rng)
+                microfacet::rough(dir, hit.normal, ratio, hit.roughness, &mut rng)
             } else {
-                Some(microfacet::smooth(dir, hit.normal, eta, &mut rng))
+                Some(microfacet::smooth(dir, hit.normal, ratio, &mut rng))
             };
             let Some(turned) = turned else {
                 flight.end = End::Lost;

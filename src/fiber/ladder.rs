@@ -1,6 +1,6 @@
 //! The uniserial ladder: a stack of puck-shaped voids, one a rung.
 
-use super::section::{UnitRay, floor, nearest_period};
+use super::section::{UnitRay, floor};
 use crate::sampling::Rng;
 use glam::DVec3;
 
@@ -11,6 +11,8 @@ pub(super) struct Puck {
     pub(super) half: f64,
     /// Across, in units of the section's semi-axes.
     pub(super) radius: f64,
+    inverse_half: f64,
+    inverse_radius2: f64,
 }
 
 /// The pucks of one period in order of z; they never touch.
@@ -19,6 +21,16 @@ pub(super) struct Ladder {
     pub(super) period: f64,
     pub(super) pucks: Vec<Puck>,
     widest: f64,
+    inverse_period: f64,
+    /// Rungs per micrometer.
+    rate: f64,
+}
+
+/// Where a walk along the endless ladder is: a puck and the z of its image's period.
+#[derive(Clone, Copy)]
+struct Rung {
+    index: usize,
+    base: f64,
 }
 
 /// Level at which a root counts as found: some roundings of its terms, 1e-13 of the size in place.
@@ -42,6 +54,8 @@ impl Ladder {
                     center: pitch * (k as f64 + 0.5) + shift,
                     half,
                     radius: WIDTH * ratio * breadth,
+                    inverse_half: 0.0,
+                    inverse_radius2: 0.0,
                 }
             })
             .collect();
@@ -58,19 +72,52 @@ impl Ladder {
             pucks[other].half = pucks[other].half.min(most);
         }
         let widest = pucks.iter().fold(0.0f64, |w, p| w.max(p.radius));
+        for puck in &mut pucks {
+            puck.inverse_half = 1.0 / puck.half;
+            puck.inverse_radius2 = 1.0 / (puck.radius * puck.radius);
+        }
         Self {
             period,
             pucks,
             widest,
+            inverse_period: 1.0 / period,
+            rate: 1.0 / pitch,
         }
     }
 
-    /// Rung `k` of the endless ladder: its puck's index and the z of its center.
-    fn rung(&self, k: i64) -> (u32, f64) {
-        let n = self.pucks.len() as i64;
-        let index = k.rem_euclid(n) as u32;
-        let image = k.div_euclid(n) as f64;
-        (index, self.puck(index).center + image * self.period)
+    /// The rung whose pitch holds `z`; its puck may be shifted into a neighbor's.
+    #[inline]
+    fn rung_at(&self, z: f64) -> Rung {
+        let base = self.period * floor(z * self.inverse_period);
+        let index = ((z - base) * self.rate) as usize;
+        Rung {
+            index: index.min(self.pucks.len() - 1),
+            base,
+        }
+    }
+
+    /// The rung above, or below.
+    #[inline]
+    fn step(&self, rung: Rung, up: bool) -> Rung {
+        let Rung { index, base } = rung;
+        match (up, index) {
+            (true, _) if index + 1 < self.pucks.len() => Rung {
+                index: index + 1,
+                base,
+            },
+            (true, _) => Rung {
+                index: 0,
+                base: base + self.period,
+            },
+            (false, 0) => Rung {
+                index: self.pucks.len() - 1,
+                base: base - self.period,
+            },
+            (false, _) => Rung {
+                index: index - 1,
+                base,
+            },
+        }
     }
 
     /// The puck of a rung.
@@ -81,7 +128,7 @@ impl Ladder {
     /// z of the center of the image of a puck that is nearest to `z`.
     pub(super) fn center_near(&self, index: u32, z: f64) -> f64 {
         let center = self.puck(index).center;
-        center + nearest_period(z - center, self.period)
+        center + self.period * floor((z - center) * self.inverse_period + 0.5)
     }
 
     /// First void that the ray enters in `t0..t1`: time and index.
@@ -99,32 +146,33 @@ impl Ladder {
         if t0 >= t1 {
             return None;
         }
-        let pitch = self.period / self.pucks.len() as f64;
-        let step = if ray.dz < 0.0 { -1 } else { 1 };
-        let z0 = ray.z + t0 * ray.dz;
-        let mut k = match from {
+        let up = ray.dz >= 0.0;
+        let inverse_dz = 1.0 / ray.dz;
+        let (z0, z1) = (ray.z + t0 * ray.dz, ray.z + t1 * ray.dz);
+        let mut rung = match from {
             // Slabs of pucks are apart: behind the one just left there is none.
             Some(index) => {
-                let image =
-                    (self.center_near(index, ray.z) - self.puck(index).center) / self.period;
-                i64::from(index) + image.round() as i64 * self.pucks.len() as i64 + step
+                let here = Rung {
+                    index: index as usize,
+                    base: self.center_near(index, ray.z) - self.puck(index).center,
+                };
+                self.step(here, up)
             }
-            None => floor(z0 / pitch) as i64 - step,
+            None => self.step(self.rung_at(z0), !up),
         };
-        let z1 = ray.z + t1 * ray.dz;
+        let forward = if up { 1.0 } else { -1.0 };
         loop {
-            let (index, center) = self.rung(k);
-            let puck = self.puck(index);
-            let forward = step as f64;
+            let puck = &self.pucks[rung.index];
+            let center = puck.center + rung.base;
             if (center - z1) * forward > puck.half {
                 return None;
             }
             if (z0 - center) * forward <= puck.half
-                && let Some(t) = puck.enter(ray, center, (a, b), (t0, t1))
+                && let Some(t) = puck.enter(ray, inverse_dz, center, (a, b), (t0, t1))
             {
-                return Some((t, index));
+                return Some((t, rung.index as u32));
             }
-            k += step;
+            rung = self.step(rung, up);
         }
     }
 
@@ -136,12 +184,13 @@ impl Ladder {
 
     /// The void that holds a point of the unit-circle frame.
     pub(super) fn at(&self, p: DVec3) -> Option<u32> {
-        let pitch = self.period / self.pucks.len() as f64;
-        let guess = floor(p.z / pitch) as i64;
-        (guess - 1..=guess + 1).find_map(|k| {
-            let (index, center) = self.rung(k);
-            (self.puck(index).level(p, center) < 0.0).then_some(index)
-        })
+        let near = self.rung_at(p.z);
+        [self.step(near, false), near, self.step(near, true)]
+            .into_iter()
+            .find_map(|rung| {
+                let puck = &self.pucks[rung.index];
+                (puck.level(p, puck.center + rung.base) < 0.0).then_some(rung.index as u32)
+            })
     }
 
     /// Share of the medulla's cross-section times period that is void.
@@ -167,61 +216,67 @@ impl Puck {
 
     /// Outward gradient in the unit-circle frame.
     pub(super) fn gradient(&self, p: DVec3, center: f64) -> DVec3 {
-        let r2 = self.radius * self.radius;
-        let across = (p.x * p.x + p.y * p.y) / (r2 * r2);
-        let along = (p.z - center) / self.half;
-        DVec3::new(across * p.x, across * p.y, along.powi(3) / self.half)
+        let i = self.inverse_radius2;
+        let across = (p.x * p.x + p.y * p.y) * (i * i);
+        let along = (p.z - center) * self.inverse_half;
+        DVec3::new(
+            across * p.x,
+            across * p.y,
+            along * along * along * self.inverse_half,
+        )
     }
 
-    /// Value and slope of the level along the ray, a convex quartic.
-    fn along(&self, ray: &UnitRay, center: f64) -> impl Fn(f64) -> (f64, f64) {
-        let i = 1.0 / (self.radius * self.radius);
-        let (a, b, c) = (i * ray.a, i * ray.b, i * ray.c);
-        let (z, dz) = ((ray.z - center) / self.half, ray.dz / self.half);
-        move |t| {
-            let q = c + t * (2.0 * b + t * a);
-            let s = z + t * dz;
-            let s3 = s * s * s;
-            (q * q + s3 * s - 1.0, 4.0 * (q * (b + t * a) + s3 * dz))
-        }
-    }
-
-    /// The slab and cylinder around the puck cut from a ray.
+    /// The level along the ray, a convex quartic.
     #[inline]
-    fn bounds(&self, ray: &UnitRay, center: f64) -> Option<(f64, f64)> {
-        let (a, b) = ray.inside_circle(self.radius)?;
-        if ray.dz == 0.0 {
-            return ((ray.z - center).abs() < self.half).then_some((a, b));
+    fn along(&self, ray: &UnitRay, center: f64) -> Quartic {
+        Quartic {
+            a: self.inverse_radius2 * ray.a,
+            b: self.inverse_radius2 * ray.b,
+            c: self.inverse_radius2 * ray.c,
+            s: (ray.z - center) * self.inverse_half,
+            ds: ray.dz * self.inverse_half,
         }
-        let (m, h) = ((center - ray.z) / ray.dz, self.half / ray.dz.abs());
-        let (a, b) = (a.max(m - h), b.min(m + h));
-        (a < b).then_some((a, b))
+    }
+
+    /// What a range of the ray has in common with the puck's slab.
+    #[inline]
+    fn within_slab(
+        &self,
+        ray: &UnitRay,
+        inverse_dz: f64,
+        center: f64,
+        (a, b): (f64, f64),
+    ) -> (f64, f64) {
+        if ray.dz == 0.0 {
+            return (a, b);
+        }
+        let (middle, reach) = ((center - ray.z) * inverse_dz, self.half * inverse_dz.abs());
+        (a.max(middle - reach), b.min(middle + reach))
     }
 
     /// Where a ray from outside enters within `t0..t1`. Newton from a point before the root of a
     /// convex function stays before it: it converges without a bracket.
     ///
     /// * `around`: where the ray enters and leaves a cylinder that holds the puck.
+    #[inline]
     fn enter(
         &self,
         ray: &UnitRay,
+        inverse_dz: f64,
         center: f64,
         around: (f64, f64),
         (t0, t1): (f64, f64),
     ) -> Option<f64> {
-        let (mut t, mut end) = around;
-        if ray.dz != 0.0 {
-            let (m, h) = ((center - ray.z) / ray.dz, self.half / ray.dz.abs());
-            (t, end) = (t.max(m - h), end.min(m + h));
-        }
+        let (mut t, end) = self.within_slab(ray, inverse_dz, center, around);
         if end <= t0 || t >= t1 {
             return None;
         }
-        let level = self.along(ray, center);
+        let quartic = self.along(ray, center);
+        let least = quartic.accuracy();
         for _ in 0..60 {
-            let (f, df) = level(t);
+            let (f, df) = quartic.at(t);
             if f <= CONVERGED {
-                return (t >= t0 && t < t1).then_some(t);
+                break;
             }
             if df >= 0.0 {
                 return None;
@@ -230,25 +285,67 @@ impl Puck {
             if t > end {
                 return None;
             }
+            if f * f <= least * df * df {
+                break;
+            }
         }
-        None
+        (t >= t0 && t < t1).then_some(t)
     }
 
     /// Where a ray from within leaves, by Newton from behind the root.
+    #[inline]
     fn leave(&self, ray: &UnitRay, center: f64) -> f64 {
-        let Some((_, b)) = self.bounds(ray, center) else {
+        let Some(around) = ray.inside_circle(self.radius) else {
             // A point on the rim whose ray touches only: it leaves where it is.
             return 0.0;
         };
-        let level = self.along(ray, center);
-        let mut t = b;
+        let (begin, end) = self.within_slab(ray, 1.0 / ray.dz, center, around);
+        if begin >= end {
+            return 0.0;
+        }
+        let quartic = self.along(ray, center);
+        let least = quartic.accuracy();
+        let mut t = end;
         for _ in 0..60 {
-            let (f, df) = level(t);
+            let (f, df) = quartic.at(t);
             if f <= CONVERGED || df <= 0.0 {
                 break;
             }
             t -= f / df;
+            if f * f <= least * df * df {
+                break;
+            }
         }
         t.max(0.0)
+    }
+}
+
+/// `q^2 + s^4 - 1` with `q = c + 2 b t + a t^2` and `s + ds t` for s.
+struct Quartic {
+    a: f64,
+    b: f64,
+    c: f64,
+    s: f64,
+    ds: f64,
+}
+
+impl Quartic {
+    /// Value and slope.
+    #[inline]
+    fn at(&self, t: f64) -> (f64, f64) {
+        let q = self.c + t * (2.0 * self.b + t * self.a);
+        let s = self.s + t * self.ds;
+        let s3 = s * s * s;
+        (
+            q * q + s3 * s - 1.0,
+            4.0 * (q * (self.b + t * self.a) + s3 * self.ds),
+        )
+    }
+
+    /// Greatest `(f / f')^2` at which one more step leaves less than the converged level: half the
+    /// curvature times it, where the curvature is at most `12 (a q + s^2 ds^2)`, q and s below 1.2.
+    #[inline]
+    fn accuracy(&self) -> f64 {
+        CONVERGED / (9.0 * (self.a + self.ds * self.ds))
     }
 }

@@ -114,6 +114,7 @@ impl Medulla {
     }
 
     /// Whether it is one medium with an outline of its own. The walls between voids are cortex.
+    #[inline]
     pub(super) fn homogeneous(&self) -> bool {
         matches!(self.voids, Voids::None)
     }
@@ -123,6 +124,11 @@ impl Medulla {
     pub(super) fn extra_pigment(&self, ray: &UnitRay, t: f64) -> f64 {
         if self.excess_pigment == 0.0 || self.homogeneous() {
             return 0.0;
+        }
+        // The medulla is convex: from one place in it to another all of the way is.
+        let end = ray.c + t * (2.0 * ray.b + t * ray.a);
+        if ray.c.max(end) <= self.ratio * self.ratio {
+            return self.excess_pigment * t;
         }
         ray.inside_circle(self.ratio).map_or(0.0, |(a, b)| {
             self.excess_pigment * (b.min(t) - a.max(0.0)).max(0.0)
@@ -142,6 +148,7 @@ impl Medulla {
     }
 
     /// First void that a ray in the matrix enters in `t0..t1`.
+    #[inline]
     pub(super) fn enter_void(
         &self,
         rays: &Rays,
@@ -164,6 +171,7 @@ impl Medulla {
     }
 
     /// Where a ray in a void leaves it, and the void. `from` is the void whose boundary it starts on.
+    #[inline]
     pub(super) fn leave_void(&self, rays: &Rays, from: Option<u32>) -> Option<(f64, u32)> {
         match &self.voids {
             Voids::None => None,
@@ -180,6 +188,7 @@ impl Medulla {
     }
 
     /// Outward gradient of a void's boundary in the unit-circle frame at a point.
+    #[inline]
     pub(super) fn void_gradient(&self, section: &Section, point: DVec3, index: u32) -> DVec3 {
         match &self.voids {
             Voids::None => DVec3::Z,

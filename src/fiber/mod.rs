@@ -99,6 +99,8 @@ pub struct Fiber {
     period_um: f64,
     /// Indexed by region.
     media: [Medium; 4],
+    /// Index of the second region over that of the first.
+    eta: [[f64; 4]; 4],
 }
 
 impl Fiber {
@@ -130,13 +132,15 @@ impl Fiber {
             ),
         };
         let medulla = Medulla::new(structure, &section, surface.rho_min(), period_um, seed)?;
+        let media = media(structure);
         Ok(Self {
             structure: structure.clone(),
             section,
             surface,
             medulla,
             period_um,
-            media: media(structure),
+            media,
+            eta: media.map(|near| media.map(|far| far.ior / near.ior)),
         })
     }
 
@@ -181,6 +185,12 @@ impl Fiber {
     #[inline]
     pub fn medium(&self, region: Region) -> &Medium {
         &self.media[region as usize]
+    }
+
+    /// Refractive index of `to` over that of `from`; 1 exactly where they are the same.
+    #[inline]
+    pub fn eta(&self, from: Region, to: Region) -> f64 {
+        self.eta[from as usize][to as usize]
     }
 
     /// The region that holds a point, found from the shapes alone, without any ray.
@@ -236,7 +246,8 @@ impl Fiber {
                 let core = |t0, t1| self.core_hit(&rays, t0, t1, element);
                 match self.surface.leave(&rays.unit, outer, core) {
                     Inward::Outer(hit) => self.outer_hit(&rays, hit, Region::Outside),
-                    Inward::Core(hit) => hit,
+                    Inward::Core((t, None)) => self.outline_hit(&rays, t, Region::Medulla),
+                    Inward::Core((t, Some(index))) => self.void_hit(&rays, t, index, Region::Void),
                     Inward::Lost => return None,
                 }
             }
@@ -265,8 +276,15 @@ impl Fiber {
         Some(self.outer_hit(&Rays { origin, dir, unit }, hit, Region::Cortex))
     }
 
-    /// What of the core a ray in the cortex meets in `t0..t1`.
-    fn core_hit(&self, rays: &Rays, t0: f64, t1: f64, from: Option<Element>) -> Option<Hit> {
+    /// What of the core a ray in the cortex meets in `t0..t1`: the outline of a homogeneous medulla
+    /// or the void of this index.
+    fn core_hit(
+        &self,
+        rays: &Rays,
+        t0: f64,
+        t1: f64,
+        from: Option<Element>,
+    ) -> Option<(f64, Option<u32>)> {
         if self.medulla.ratio <= 0.0 {
             return None;
         }
@@ -276,18 +294,14 @@ impl Fiber {
                 return None;
             }
             let (t, _) = rays.unit.inside_circle(self.medulla.ratio)?;
-            return (t >= t0 && t < t1).then(|| self.outline_hit(rays, t, Region::Medulla));
+            return (t >= t0 && t < t1).then_some((t, None));
         }
-        self.next_void(rays, t0, t1, from)
-    }
-
-    fn next_void(&self, rays: &Rays, t0: f64, t1: f64, from: Option<Element>) -> Option<Hit> {
         let from = match from {
             Some(Element::Void(index)) => Some(index),
             _ => None,
         };
         let (t, index) = self.medulla.enter_void(rays, t0, t1, from)?;
-        Some(self.void_hit(rays, t, index, Region::Void))
+        Some((t, Some(index)))
     }
 
     /// Where a ray inside a homogeneous medulla leaves it.

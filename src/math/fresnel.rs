@@ -23,6 +23,27 @@ pub fn dielectric(cos_i: f64, eta: f64) -> (f64, f64) {
     )
 }
 
+/// Whether a photon is reflected by a smooth dielectric boundary, and the cosine of the refracted
+/// direction: [`dielectric`] compared with `u` without a division.
+///
+/// * `inverse`: the inverse of `eta`. * `u`: uniform in `[0, 1)`.
+#[inline]
+pub fn reflects(cos_i: f64, eta: f64, inverse: f64, u: f64) -> (bool, f64) {
+    let sin2_t = (1.0 - cos_i * cos_i).max(0.0) * (inverse * inverse);
+    if sin2_t >= 1.0 {
+        return (true, 0.0);
+    }
+    let cos_t = (1.0 - sin2_t).sqrt();
+    let (p, s) = (eta * cos_i + cos_t, cos_i + eta * cos_t);
+    let parallel = (eta * cos_i - cos_t) * s;
+    let perpendicular = (cos_i - eta * cos_t) * p;
+    let all = p * s;
+    (
+        2.0 * u * (all * all) < parallel * parallel + perpendicular * perpendicular,
+        cos_t,
+    )
+}
+
 /// Mirror direction of a ray traveling along `dir` at a surface with unit normal `n`.
 #[inline]
 pub fn reflect(dir: DVec3, n: DVec3) -> DVec3 {
@@ -36,7 +57,12 @@ pub fn reflect(dir: DVec3, n: DVec3) -> DVec3 {
 /// * `cos_t`: the cosine from [`dielectric`].
 #[inline]
 pub fn refract(dir: DVec3, n: DVec3, eta: f64, cos_t: f64) -> DVec3 {
-    let inverse = 1.0 / eta;
+    refract_by(dir, n, 1.0 / eta, cos_t)
+}
+
+/// [`refract`] given the inverse of `eta`.
+#[inline]
+pub fn refract_by(dir: DVec3, n: DVec3, inverse: f64, cos_t: f64) -> DVec3 {
     let cos_i = -dir.dot(n);
     renormalize(inverse * dir + (inverse * cos_i - cos_t) * n)
 }
@@ -71,6 +97,20 @@ mod tests {
             let (r, cos_t) = dielectric(cos_i, 1.55);
             let (back, cos_back) = dielectric(cos_t, 1.0 / 1.55);
             assert!((r - back).abs() < 1e-12 && (cos_back - cos_i).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_choice_is_the_reflectance() {
+        for eta in [1.55, 1.0 / 1.55, 1.02] {
+            for i in 0..=50 {
+                let cos_i = f64::from(i) / 50.0;
+                let (reflectance, cos_t) = dielectric(cos_i, eta);
+                let choose = |u| reflects(cos_i, eta, 1.0 / eta, u);
+                assert!(choose(reflectance * (1.0 - 1e-9) - 1e-15).0);
+                assert!(!choose(reflectance * (1.0 + 1e-9) + 1e-15).0 || reflectance == 1.0);
+                assert!((choose(0.5).1 - cos_t).abs() < 1e-12);
+            }
         }
     }
 
