@@ -5,6 +5,7 @@
 //! crossing that must be found, so that rounding can move a hit but never lose one. Only where the
 //! sides agree may a grazing pair of crossings hide, and the parabola through both ends tells.
 
+use super::crossing::{Crossing, Quadratic};
 use super::scales::{Cell, Plane, Scales, Strip, distance};
 use super::section::UnitRay;
 use glam::DVec3;
@@ -48,13 +49,6 @@ pub(super) enum March {
 
 /// Cells in one march; at the axis a ray meets a strip a micrometer, so this is some centimeters.
 const MAX_CELLS: usize = 20_000;
-/// Convergence of a hit, in units of the radius over the ray's radial speed.
-const TOLERANCE: f64 = 1e-12;
-/// A step this small, in the same units, is the last of the secants: the next would be smaller by
-/// the share that the slope is off, a thousandth and less.
-const LAST_STEP: f64 = 1e-9;
-/// f is known to some roundings of its terms, which are about 1.
-const ROUNDING: f64 = 5e-16;
 /// Stands for an endless way where infinity would give NaN.
 const AXIAL: f64 = 1e100;
 
@@ -67,51 +61,8 @@ enum Exit {
     Down,
 }
 
-/// `c + 2 b t + a t^2`.
-#[derive(Clone, Copy)]
-struct Quadratic {
-    a: f64,
-    b: f64,
-    c: f64,
-}
-
-impl Quadratic {
-    #[inline]
-    fn at(self, t: f64) -> f64 {
-        self.c + t * (2.0 * self.b + t * self.a)
-    }
-
-    /// The root where it falls, written so that it loses no digits.
-    fn falling_root(self) -> f64 {
-        let root = (self.b * self.b - self.a * self.c).max(0.0).sqrt();
-        if self.b <= 0.0 {
-            let q = root - self.b;
-            if q > 0.0 { self.c / q } else { 0.0 }
-        } else {
-            -(self.b + root) / self.a
-        }
-    }
-
-    #[inline]
-    /// First time up to `limit` at which a quadratic that starts at `c >= 0` turns negative.
-    fn turns_negative(self, limit: f64) -> Option<f64> {
-        let falls = self.at(limit) < 0.0
-            || (self.a > 0.0
-                && self.b < 0.0
-                && -self.b < limit * self.a
-                && self.b * self.b > self.a * self.c);
-        falls.then(|| {
-            if self.c == 0.0 && self.b <= 0.0 {
-                0.0
-            } else {
-                self.falling_root().clamp(0.0, limit)
-            }
-        })
-    }
-}
-
 /// A cell seen along the ray, from where the ray enters it.
-struct Window<'a> {
+pub(super) struct Window<'a> {
     strip: &'a Strip,
     /// Distances from the two half planes and the rates of them.
     a: f64,
@@ -152,14 +103,14 @@ impl<'a> Window<'a> {
 
     /// Position between the half planes at `t`.
     #[inline]
-    fn across(&self, t: f64) -> f64 {
+    pub(super) fn across(&self, t: f64) -> f64 {
         let (a, b) = (self.a + t * self.da, self.b + t * self.db);
         a / (a + b)
     }
 
     /// `1 + E` at `t`, where the ray is at `u` between the half planes.
     #[inline]
-    fn radius(&self, u: f64, t: f64) -> f64 {
+    pub(super) fn radius(&self, u: f64, t: f64) -> f64 {
         1.0 + self.strip.height_at(u, self.z + t * self.dz)
     }
 
@@ -324,130 +275,5 @@ impl Scales {
                 gradient: self.face_gradient(new, p),
             },
         }
-    }
-}
-
-/// `f = rho^2 - (1 + E)^2` along the ray in one cell; the ray's parameter x runs from 0 to 1 in it.
-struct Crossing<'a> {
-    window: &'a Window<'a>,
-    sign: f64,
-    /// The way through the cell, micrometers.
-    length: f64,
-    /// `1 + E` at both ends.
-    r0: f64,
-    r1: f64,
-    /// rho^2 and signed f at the start.
-    rho2: f64,
-    c: f64,
-    /// Coefficients of `rho^2 = rho2 + 2 c1 x + c2 x^2`.
-    c1: f64,
-    c2: f64,
-}
-
-impl Crossing<'_> {
-    /// First crossing, as way from the cell's start.
-    ///
-    /// * `c_end`: rho^2 at the end.
-    ///
-    /// With E replaced by its chord f is a quadratic with exact values at both ends. Its root starts
-    /// the search: E is so nearly linear in a cell that each pass wins many digits.
-    #[inline]
-    fn first(&self, c_end: f64, on_face: bool) -> Option<f64> {
-        let odd = self.sign * (c_end - self.r1 * self.r1) < 0.0;
-        if !odd && on_face {
-            return None;
-        }
-        if self.length <= 0.0 {
-            return odd.then_some(0.0);
-        }
-        let q = self.chord(self.r1 - self.r0);
-        let pair = || q.b < 0.0 && -q.b < q.a && q.b * q.b > q.a * q.c;
-        (odd || pair()).then(|| self.length * self.refine(q))
-    }
-
-    /// f with E replaced by the chord that rises by `rise` over the cell.
-    #[inline]
-    fn chord(&self, rise: f64) -> Quadratic {
-        Quadratic {
-            a: self.sign * (self.c2 - rise * rise),
-            b: self.sign * (self.c1 - self.r0 * rise),
-            c: self.c,
-        }
-    }
-
-    #[inline]
-    fn root(&self, q: Quadratic) -> f64 {
-        let x = if self.c > 0.0 {
-            q.falling_root()
-        } else if q.b > 0.0 && q.a < 0.0 {
-            -2.0 * q.b / q.a
-        } else {
-            0.0
-        };
-        x.clamp(0.0, 1.0)
-    }
-
-    #[inline]
-    fn radius(&self, x: f64) -> f64 {
-        let t = x * self.length;
-        self.window.radius(self.window.across(t), t)
-    }
-
-    /// Signed f.
-    #[inline]
-    fn at(&self, x: f64) -> f64 {
-        let r = self.radius(x);
-        self.sign * (self.rho2 + x * (2.0 * self.c1 + x * self.c2) - r * r)
-    }
-
-    #[inline]
-    fn refine(&self, q: Quadratic) -> f64 {
-        let x = self.root(q);
-        // The slope of the chord's quadratic serves the first step, secants the others.
-        self.secant(x, 2.0 * (q.b + q.a * x))
-            .unwrap_or_else(|| self.chords(x))
-    }
-
-    /// Secants from `x`, where f has about `slope`. `None` where they do not converge at once: at
-    /// grazing rays, where f has two near roots.
-    #[inline]
-    fn secant(&self, mut x: f64, mut slope: f64) -> Option<f64> {
-        let mut f = self.at(x);
-        let mut last = 0.5;
-        for _ in 0..4 {
-            if f.abs() <= ROUNDING {
-                return Some(x);
-            }
-            let move_by = -f / slope;
-            let next = x + move_by;
-            // Written so that NaN fails too.
-            if !(slope < 0.0 && move_by.abs() <= 0.1 * last && (0.0..=1.0).contains(&next)) {
-                return None;
-            }
-            if move_by * move_by * self.c2 <= LAST_STEP * LAST_STEP {
-                return Some(next);
-            }
-            let value = self.at(next);
-            slope = (value - f) / (next - x);
-            (x, f, last) = (next, value, move_by.abs());
-        }
-        None
-    }
-
-    /// Roots of chords from the start to the last estimate: slower, and sure.
-    #[cold]
-    fn chords(&self, mut x: f64) -> f64 {
-        for _ in 0..8 {
-            if x <= 0.0 {
-                break;
-            }
-            let next = self.root(self.chord((self.radius(x) - self.r0) / x));
-            let moved = (next - x).abs();
-            x = next;
-            if moved * moved * self.c2 <= TOLERANCE * TOLERANCE {
-                break;
-            }
-        }
-        x
     }
 }

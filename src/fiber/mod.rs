@@ -4,6 +4,7 @@
 //! [`Fiber::period_um`]; rays may start and end at any z.
 
 mod covering;
+mod crossing;
 mod error;
 mod froth;
 mod ladder;
