@@ -38,10 +38,10 @@ pub(super) struct Args {
     #[arg(long)]
     env_visible: bool,
     /// Width and height of the picture.
-    #[arg(long, value_parser = parse_size, default_value = "960x720")]
+    #[arg(long, value_parser = parse_size, default_value = "640x480")]
     res: [u32; 2],
     /// Samples a pixel.
-    #[arg(long, default_value_t = 32)]
+    #[arg(long, default_value_t = 16)]
     spp: u32,
     /// Renders only a part of the frame, with the same pixels: x,y,width,height.
     #[arg(long, value_parser = parse_crop)]

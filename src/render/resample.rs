@@ -37,13 +37,13 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// Candidates for direct light at a scattering depth, beside a continuing ray. Eight pay off at
-    /// the eye; deeper, occlusion rules the variance and two do as well. The continuing ray counts
+    /// Candidates for direct light at a scattering depth, beside a continuing ray. Four at the
+    /// eye: eight lower the noise by less than they cost; deeper, occlusion rules the variance and
+    /// two do as well. The continuing ray counts
     /// as much as all of them: at a tenth of that the noise in even light grows by half.
     pub(super) fn direct(depth: u32) -> Self {
         let half = match depth {
-            0 => 4,
-            1 | 2 => 2,
+            0 => 2,
             _ => 1,
         };
         Self {
