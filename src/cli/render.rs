@@ -9,7 +9,7 @@ use crate::image::{self, Curve, ViewTransform};
 use crate::io::check_writable;
 use crate::render::{Crop, Film, RenderJob, Sampler};
 use crate::scene::{Backdrop, Environment, Scene, SceneParts, Sun, View, load_environment};
-use crate::skin;
+use crate::skin::{self, Skin};
 use crate::species;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
@@ -58,7 +58,8 @@ pub(super) struct Args {
     /// Photons for each scattering table that has to be baked.
     #[arg(long, value_parser = parse_count, default_value = "4e6")]
     bake_photons: u64,
-    /// Camera: degrees around the subject (0 is the front) and above it.
+    /// Camera: degrees around the subject (0 is +Z, 90 is +X) and above it; if not given, the side from
+    /// which the skin looks best.
     #[arg(long, value_parser = parse_pair, value_name = "YAW,PITCH", allow_hyphen_values = true)]
     view: Option<[f32; 2]>,
     /// Field of view along the shorter side, degrees.
@@ -79,6 +80,9 @@ pub(super) struct Args {
     /// Cut the PNG at white instead of rolling bright parts off.
     #[arg(long)]
     plain: bool,
+    /// Write the PNG as it was sampled. By default noise is taken out of it, never out of the EXR.
+    #[arg(long)]
+    no_denoise: bool,
     /// Seed of fiber, fur and picture.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -154,9 +158,9 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         format_of(output)?;
         check_writable(output)?;
     }
-    let environment = environment(args)?;
-    let view = view(args)?;
     let skin = skin::load(&args.skin)?;
+    let view = view(args, &skin)?;
+    let environment = environment(args, &view)?;
     for warning in &skin.warnings {
         console.say(format!("warning: {warning}"));
     }
@@ -236,19 +240,20 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
     })
 }
 
-fn environment(args: &Args) -> Result<Environment, Failure> {
-    let environment = match args.env.as_str() {
-        "studio" => Environment::studio(),
-        "sky" => Environment::sky(&Sun::default()),
-        "white" => Environment::white(),
-        path => load_environment(Path::new(path))?,
-    };
+fn environment(args: &Args, view: &View) -> Result<Environment, Failure> {
     check_range("--env-turn", args.env_turn, -3600.0, 3600.0)?;
-    Ok(environment.turned(args.env_turn))
+    Ok(match args.env.as_str() {
+        // Studio lights stand around the camera; sun and pictures stay where they are.
+        "studio" => Environment::studio().turned(view.yaw_deg + args.env_turn),
+        "sky" => Environment::sky(&Sun::default()).turned(args.env_turn),
+        "white" => Environment::white(),
+        path => load_environment(Path::new(path))?.turned(args.env_turn),
+    })
 }
 
-fn view(args: &Args) -> Result<View, Failure> {
-    let base = View::default();
+/// The view asked for; where nothing was asked, the direction from which the skin looks best.
+fn view(args: &Args, skin: &Skin) -> Result<View, Failure> {
+    let base = View::from_direction(skin.view);
     let [yaw_deg, pitch_deg] = args.view.unwrap_or([base.yaw_deg, base.pitch_deg]);
     check_range("--view pitch", pitch_deg, -89.0, 89.0)?;
     Ok(View {
@@ -325,7 +330,12 @@ fn write(args: &Args, species: &species::Species, film: &Film) -> Result<(), Fai
     };
     for output in &args.output {
         match format_of(output)? {
-            Format::Png => image::write_film_png(output, film, &view, &provenance)?,
+            Format::Png if args.no_denoise => {
+                image::write_film_png(output, film, &view, &provenance)?;
+            }
+            Format::Png => {
+                image::write_film_png(output, &image::denoise(film), &view, &provenance)?;
+            }
             Format::Exr => image::write_film_exr(output, film, &provenance)?,
         }
     }

@@ -34,6 +34,17 @@ impl Default for View {
     }
 }
 
+impl View {
+    /// The default view from a unit direction out of the subject.
+    pub fn from_direction(dir: Vec3) -> Self {
+        Self {
+            yaw_deg: dir.x.atan2(dir.z).to_degrees(),
+            pitch_deg: dir.y.clamp(-1.0, 1.0).asin().to_degrees(),
+            ..Self::default()
+        }
+    }
+}
+
 /// A camera at its place. Scene units.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {

@@ -11,7 +11,8 @@ use glam::Vec3;
 pub struct Surface {
     corners: Vec<[Vec3; 3]>,
     normals: Vec<[Vec3; 3]>,
-    color: Rgb,
+    /// Diffuse reflectance at the corners.
+    colors: Vec<[Rgb; 3]>,
     accel: Accel,
 }
 
@@ -29,9 +30,10 @@ pub struct SurfaceHit {
 }
 
 impl Surface {
-    /// * `color`: linear reflectance 0..1 of the whole skin.
+    /// * `color`: linear reflectance 0..1, multiplied by the skin's own factor at each vertex.
     pub fn build(skin: &Skin, color: Rgb) -> Result<Self, SceneError> {
         let bad = skin.normals.len() != skin.positions.len()
+            || skin.color.len() != skin.positions.len()
             || (skin.triangles.iter().flatten()).any(|&i| i as usize >= skin.positions.len());
         if bad {
             return Err(SceneError::Skin {
@@ -59,7 +61,9 @@ impl Surface {
                 .map(|t| pick(&skin.positions, t, UNITS_PER_METER))
                 .collect(),
             normals: sorted().map(|t| pick(&skin.normals, t, 1.0)).collect(),
-            color,
+            colors: sorted()
+                .map(|t| pick(&skin.color, t, 1.0).map(|factor| factor * color))
+                .collect(),
             accel,
         })
     }
@@ -81,6 +85,7 @@ impl Surface {
         let flat = (b - a).cross(c - a).normalize_or(-ray.dir);
         let facing = if flat.dot(ray.dir) > 0.0 { -flat } else { flat };
         let [na, nb, nc] = self.normals[prim];
+        let [ca, cb, cc] = self.colors[prim];
         let smooth = (u * na + v * nb + w * nc).normalize_or(facing);
         let normal = if smooth.dot(facing) < 0.0 {
             -smooth
@@ -91,7 +96,7 @@ impl Surface {
             t,
             facing,
             normal,
-            color: self.color,
+            color: u * ca + v * cb + w * cc,
         })
     }
 

@@ -215,6 +215,7 @@ fn a_closed_skin_does_not_leak() {
             );
             skin.positions.push(0.01 * d);
             skin.normals.push(d);
+            skin.color.push(Vec3::ONE);
         }
     }
     for j in 0..m {
