@@ -26,7 +26,7 @@ fn even(path: &Path) {
         },
     };
     for i in 0..bins * levels.len() {
-        let escaped = PHOTON * 1000 >> (i % levels.len());
+        let escaped = (PHOTON * 1000) >> (i % levels.len());
         let share = escaped as f64 / (PHOTON * 1000) as f64;
         let flux = (share / texels as f64) as f32;
         table.flux.extend(std::iter::repeat_n(flux, texels));
