@@ -35,14 +35,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let groom = groom::grow(&ball, &bear, &settings, &Silent, &cancel)?;
 
     // Picture.
+    let view = View::from_direction(ball.view);
     let scene = Scene::build(SceneParts {
         groom: &groom,
         materials,
         skin: Some((&ball, bear.skin_color.map(|c| c as f32).into())),
-        environment: Environment::studio(),
+        environment: Environment::studio().turned(view.yaw_deg),
         backdrop: Backdrop::default(),
         ground: None,
-        view: View::default(),
+        view,
     })?;
     let job = RenderJob {
         resolution: [480, 360],

@@ -17,10 +17,13 @@ use vair::{skin, species};
 fn main() -> Result<(), Box<dyn Error>> {
     let output = PathBuf::from(std::env::args().nth(1).unwrap_or("tress.png".into()));
     let cancel = Cancel::default();
+    // A smooth cylinder, and hair light enough that the inside of the fiber shows.
     let overrides = [
         "structure.ior=1.5",
         "guard.stations.0.aspect=1",
         "guard.stations.0.cuticle.pattern=smooth",
+        "guard.pigment.0.eumelanin=0.5",
+        "guard.groom.stray_deg=4",
     ];
     let human = species::load("human", &overrides.map(String::from))?;
 
@@ -33,18 +36,21 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let tress = skin::load("tress")?;
     let groom = groom::grow(&tress, &human, &GroomSettings::default(), &Silent, &cancel)?;
+    // Light from 42 degrees above: seen from as much below, the cones of R and TRT come to the eye.
+    let view = View {
+        yaw_deg: 20.0,
+        pitch_deg: -24.0,
+        zoom: 1.3,
+        ..View::default()
+    };
     let scene = Scene::build(SceneParts {
         groom: &groom,
         materials,
         skin: Some((&tress, human.skin_color.map(|c| c as f32).into())),
-        environment: Environment::studio(),
+        environment: Environment::studio().turned(view.yaw_deg),
         backdrop: Backdrop::default(),
         ground: None,
-        view: View {
-            yaw_deg: 20.0,
-            pitch_deg: 0.0,
-            ..View::default()
-        },
+        view,
     })?;
     let job = RenderJob {
         resolution: [1024, 768],

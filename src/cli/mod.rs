@@ -54,6 +54,7 @@ enum Command {
 
 /// Parses the command line, runs the command and returns the exit code.
 pub fn run() -> ExitCode {
+    std::panic::set_hook(Box::new(end_in_order));
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
@@ -71,6 +72,19 @@ pub fn run() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }
+}
+
+/// A reader that has seen enough (`vair table info x.exr | head`) is no error; any other panic is a
+/// defect of this program, on whichever thread it happens. Files under way are temporary and unnamed.
+fn end_in_order(panic: &std::panic::PanicHookInfo<'_>) {
+    let message = panic.payload_as_str().unwrap_or("unknown");
+    if message.starts_with("failed printing to stdout") {
+        std::process::exit(0);
+    }
+    let place = panic.location().map(ToString::to_string).unwrap_or_default();
+    eprintln!("internal error: {message} at {place}");
+    eprintln!("this is a defect of vair; please report it with the command line that led here");
+    std::process::exit(3);
 }
 
 fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
