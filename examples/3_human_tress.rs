@@ -58,7 +58,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..RenderJob::default()
     };
     let film = job.run(&scene, &Silent, &cancel)?;
-    image::write_film_png(&output, &film, &ViewTransform::default(), &[])?;
+    let transform = ViewTransform {
+        exposure_ev: -0.4,
+        ..ViewTransform::default()
+    };
+    image::write_film_png(&output, &film, &transform, &[])?;
     println!("{} strands, {}", groom.strands(), output.display());
     Ok(())
 }

@@ -81,7 +81,10 @@ fn end_in_order(panic: &std::panic::PanicHookInfo<'_>) {
     if message.starts_with("failed printing to stdout") {
         std::process::exit(0);
     }
-    let place = panic.location().map(ToString::to_string).unwrap_or_default();
+    let place = panic
+        .location()
+        .map(ToString::to_string)
+        .unwrap_or_default();
     eprintln!("internal error: {message} at {place}");
     eprintln!("this is a defect of vair; please report it with the command line that led here");
     std::process::exit(3);
