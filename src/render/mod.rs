@@ -34,7 +34,7 @@ pub enum Sampler {
     #[default]
     Qsir,
     /// The paper's scheme: resampling draws the one ray that carries direct and indirect light.
-    /// Fewer rays, but in dense fur two to three times the noise of [`Sampler::Qsir`].
+    /// Half the rays, but 1.1 to 3 times the noise a sample of [`Sampler::Qsir`].
     QsirOneRay,
     /// The scattering model alone.
     Bsdf,

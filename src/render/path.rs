@@ -9,7 +9,7 @@ use crate::scene::{Camera, Ground, Hit, Scene};
 use glam::{Vec2, Vec3};
 
 /// Scattering events before roulette may end a path. At 1 dark fur pays more in noise than it saves,
-/// from 8 on pale fur takes twice the time for the same noise.
+/// at 8 pale fur takes 1.6 times the time for the same noise.
 const ROULETTE_FROM: u32 = 2;
 
 /// Scattering events after which a path is cut whatever it carries. Lossless fur escapes long
