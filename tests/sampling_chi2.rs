@@ -20,25 +20,34 @@ const SAMPLES: u64 = 300_000;
 /// 2 % in half of them with a probability of about 0.98; finer grids see less.
 const CELLS: usize = 8;
 
-/// Sub-points along a cell edge for the integral of the density. Texels of a shifted map do not
-/// align with cells, so the integral is a stratified random one: 6 points to a texel edge.
+/// Sub-points along a cell edge for the integral of the density: texels of a shifted map do not align
+/// with cells, so the integral is a stratified random one. Where a sharp lobe puts many samples into
+/// one cell, the integral has to be as sharp as they are.
 const SUB: usize = 48;
+const FINE_SUB: usize = 320;
+const CROWDED: f64 = 1500.0;
+
+/// Expected samples in a cell.
+fn expected(density: &impl Fn(Vec3) -> f32, cells: &Unicube, cell: usize, sub: usize) -> f64 {
+    let mut rng = Rng::new(sub as u64, cell as u64);
+    let mut sum = 0.0;
+    for i in 0..sub * sub {
+        let a = ((i % sub) as f64 + rng.uniform()) / sub as f64;
+        let b = ((i / sub) as f64 + rng.uniform()) / sub as f64;
+        let (w, jacobian) = cells.direction(cell, a, b);
+        sum += f64::from(density(w.as_vec3())) * jacobian;
+    }
+    sum / (sub * sub) as f64 * SAMPLES as f64
+}
 
 fn chi_squared(bsdf: &Bsdf<'_>, seed: u64, distort: impl Fn(Vec3) -> f32 + Sync) -> f64 {
     let cells = Unicube::new(CELLS);
+    let density = |w: Vec3| bsdf.pdf(w) * distort(w);
     let expected: Vec<f64> = (0..cells.texels())
         .into_par_iter()
-        .map(|cell| {
-            let mut rng = Rng::new(seed, cell as u64);
-            let mut sum = 0.0;
-            for i in 0..SUB * SUB {
-                let a = ((i % SUB) as f64 + rng.uniform()) / SUB as f64;
-                let b = ((i / SUB) as f64 + rng.uniform()) / SUB as f64;
-                let (w, jacobian) = cells.direction(cell, a, b);
-                let w = w.as_vec3();
-                sum += f64::from(bsdf.pdf(w) * distort(w)) * jacobian;
-            }
-            sum / (SUB * SUB) as f64 * SAMPLES as f64
+        .map(|cell| match expected(&density, &cells, cell, SUB) {
+            e if e > CROWDED => expected(&density, &cells, cell, FINE_SUB),
+            e => e,
         })
         .collect();
     let mut counts = vec![0u64; cells.texels()];
