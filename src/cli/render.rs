@@ -41,7 +41,7 @@ pub(super) struct Args {
     #[arg(long, value_parser = parse_size, default_value = "640x480")]
     res: [u32; 2],
     /// Samples a pixel.
-    #[arg(long, default_value_t = 16)]
+    #[arg(long, default_value_t = 32)]
     spp: u32,
     /// Renders only a part of the frame, with the same pixels: x,y,width,height.
     #[arg(long, value_parser = parse_crop)]
@@ -56,7 +56,7 @@ pub(super) struct Args {
     #[arg(long, value_parser = parse_count)]
     strands: Option<u64>,
     /// Photons for each scattering table that has to be baked.
-    #[arg(long, value_parser = parse_count, default_value = "4e6")]
+    #[arg(long, value_parser = parse_count, default_value = "3e6")]
     bake_photons: u64,
     /// Camera: degrees around the subject (0 is +Z, 90 is +X) and above it; if not given, the side from
     /// which the skin looks best.
