@@ -1,4 +1,4 @@
-//! The unicube map: a cube map whose strips are exactly equal in solid angle.        [Ho11]
+//! The unicube map: a cube map whose strips are exactly equal in solid angle (Ho et al. 2011).
 //!
 //! Faces are ordered +X -X +Y -Y +Z -Z. On a face the two other axes, in alphabetical order, are
 //! the coordinates `u` (column) and `v` (row), each divided by the face's own component: +X and -X
