@@ -8,7 +8,7 @@ use crate::blame::Blame;
 const FAULTS: [(&str, &str); 12] = [
     ("latin = \"Vulpes vulpes\"", "latn = \"Vulpes vulpes\""),
     ("summary = \"Rufous", "sumary = \"Rufous"),
-    ("color = [0.36, 0.25, 0.20]", "color = [0.36, 0.25]"),
+    ("color = [0.10, 0.05, 0.028]", "color = [0.10, 0.05]"),
     (
         "ior = { value = 1.55, source = \"ML\" }",
         "ior = { value = 1.55, source = \"MLL\" }",
@@ -21,7 +21,7 @@ const FAULTS: [(&str, &str); 12] = [
     ("pattern = \"mosaic\"", "pattern = \"mosiac\""),
     ("around = 7\nestimate =", "around = 7\nestimte ="),
     ("ratio = { value = 0.70,", "ratio = { value = 7.0,"),
-    ("to_mm = 9\n", ""),
+    ("to_mm = 16\n", ""),
     ("clump = 0.3\n", "clump = true\n"),
     ("stray_deg = 6\n", ""),
 ];
