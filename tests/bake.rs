@@ -21,13 +21,16 @@ fn cylinder() -> Structure {
             jitter: 0.0,
             roughness: 0.0,
             riser_roughness: 0.0,
+            ..Default::default()
         },
         medulla: Medulla {
             ratio: 0.0,
             kind: MedullaKind::None,
             void_ior: 1.0003,
             pigment: 1.0,
+            ..Default::default()
         },
+        ..Default::default()
     }
 }
 

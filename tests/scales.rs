@@ -21,18 +21,15 @@ fn scaled(pattern: CuticlePattern, height_um: f64, medulla: Medulla) -> Structur
             jitter: 0.2,
             roughness: 0.0,
             riser_roughness: 0.3,
+            ..Default::default()
         },
         medulla,
+        ..Default::default()
     }
 }
 
 fn no_medulla() -> Medulla {
-    Medulla {
-        ratio: 0.0,
-        kind: MedullaKind::None,
-        void_ior: 1.0003,
-        pigment: 1.0,
-    }
+    Medulla::default()
 }
 
 fn flights(fiber: &Fiber, sin_range: (f64, f64), photons: u64) -> Vec<Flight> {
@@ -112,6 +109,7 @@ fn explicit_geometry_is_reciprocal() {
         },
         void_ior: 1.0003,
         pigment: 1.0,
+        ..Default::default()
     };
     for (name, structure) in [
         ("scales", scaled(CuticlePattern::Coronal, 0.5, no_medulla())),

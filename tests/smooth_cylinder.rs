@@ -37,13 +37,16 @@ fn glass(settings: &Settings) -> StructureTable {
             jitter: 0.0,
             roughness: 0.0,
             riser_roughness: 0.0,
+            ..Default::default()
         },
         medulla: Medulla {
             ratio: 0.0,
             kind: MedullaKind::None,
             void_ior: 1.0,
             pigment: 0.0,
+            ..Default::default()
         },
+        ..Default::default()
     };
     let fiber = Fiber::build(&structure, 0).expect("a cylinder is a fiber");
     let baked = bake(

@@ -9,7 +9,7 @@ use super::{Console, Failure};
 use crate::blame::Blame;
 use crate::fiber::{Fiber, FiberError};
 use crate::io::check_writable;
-use crate::species::{self, CuticlePattern, HairClass, MedullaKind, Species, Station, Structure};
+use crate::species::{self, CuticlePattern, HairClass, Species, Station, Structure};
 use plate::Labels;
 use serde_json::json;
 use std::io::Write as _;
@@ -130,26 +130,6 @@ fn format_of(path: &Path) -> Result<Format, Failure> {
     }
 }
 
-fn pattern_name(pattern: CuticlePattern) -> &'static str {
-    match pattern {
-        CuticlePattern::Smooth => "smooth",
-        CuticlePattern::Coronal => "coronal",
-        CuticlePattern::IrregularWave => "irregular wave",
-        CuticlePattern::Mosaic => "mosaic",
-        CuticlePattern::DiamondPetal => "diamond petal",
-    }
-}
-
-fn medulla_name(structure: &Structure) -> &'static str {
-    match structure.medulla.kind {
-        _ if structure.medulla.ratio <= 0.0 => "none",
-        MedullaKind::None => "none",
-        MedullaKind::Ladder { .. } => "uniserial ladder",
-        MedullaKind::Froth { .. } => "froth",
-        MedullaKind::Medium { .. } => "scattering medium",
-    }
-}
-
 /// Tilt of the scales, degrees.
 fn tilt_deg(structure: &Structure) -> f64 {
     let cuticle = &structure.cuticle;
@@ -171,7 +151,7 @@ fn labels(species: &Species, class: &HairClass, station: &Station, fiber: &Fiber
     } else {
         format!(
             "cuticle: {}, {} round, pitch {} \u{b5}m, step {} \u{b5}m, tilt {:.1}\u{b0}",
-            pattern_name(c.pattern),
+            c.pattern.name(),
             c.around,
             c.pitch_um,
             c.height_um,
@@ -179,7 +159,7 @@ fn labels(species: &Species, class: &HairClass, station: &Station, fiber: &Fiber
         )
     });
     let air = fiber.air_fraction();
-    facts.push(match medulla_name(s) {
+    facts.push(match s.medulla.kind.name() {
         "none" => "medulla: none".to_owned(),
         name if air > 0.0 => format!(
             "medulla: {name}, index {:.2}, {:.0} % air",
@@ -221,7 +201,7 @@ fn summary(
             "strips": fiber.strip_count(),
         },
         "medulla": {
-            "kind": medulla_name(s),
+            "kind": s.medulla.kind.name(),
             "ratio": s.medulla.ratio,
             "air_fraction": fiber.air_fraction(),
             "voids": fiber.void_count(),

@@ -160,7 +160,7 @@ fn class_pages(page: &mut String, class: &HairClass, origins: &Origins) {
         rows(page, &origins.of_layers(&layers, ""));
         let _ = writeln!(page, "  cuticle: {}", pattern.as_str().unwrap_or_default());
         rows(page, &origins.of_layers(&layers, ".cuticle"));
-        let _ = writeln!(page, "  medulla: {}", medulla_name(&structure.medulla.kind));
+        let _ = writeln!(page, "  medulla: {}", structure.medulla.kind.name());
         if structure.medulla.kind != MedullaKind::None {
             rows(page, &origins.of_layers(&layers, ".medulla"));
         }
@@ -181,15 +181,6 @@ fn class_pages(page: &mut String, class: &HairClass, origins: &Origins) {
     }
     let _ = writeln!(page, "\n{title}: groom");
     rows(page, &origins.of_table(&format!("{}.groom", class.name)));
-}
-
-fn medulla_name(kind: &MedullaKind) -> &'static str {
-    match kind {
-        MedullaKind::None => "none",
-        MedullaKind::Ladder { .. } => "ladder",
-        MedullaKind::Froth { .. } => "froth",
-        MedullaKind::Medium { .. } => "medium",
-    }
 }
 
 /// A line for each number: key, value with unit, origin.

@@ -37,9 +37,9 @@ impl Medulla {
     /// Length of a period that suits the medulla alone.
     pub(super) fn period_um(structure: &Structure) -> f64 {
         match structure.medulla.kind {
-            MedullaKind::None | MedullaKind::Medium { .. } => LEAST_PERIOD_UM,
             MedullaKind::Ladder { pitch_um, .. } => RUNGS * pitch_um,
             MedullaKind::Froth { radius_um, .. } => (12.0 * radius_um).max(LEAST_PERIOD_UM),
+            _ => LEAST_PERIOD_UM,
         }
     }
 
@@ -68,7 +68,6 @@ impl Medulla {
             });
         }
         let voids = match medulla.kind {
-            MedullaKind::None | MedullaKind::Medium { .. } => Voids::None,
             MedullaKind::Ladder {
                 pitch_um,
                 septum_um,
@@ -105,6 +104,7 @@ impl Medulla {
                         })?;
                 Voids::Froth(Froth::new(packing, section, ratio))
             }
+            _ => Voids::None,
         };
         Ok(Self {
             ratio,

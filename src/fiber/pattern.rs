@@ -65,10 +65,16 @@ impl Pattern {
         };
         let mut pattern = match cuticle.pattern {
             CuticlePattern::Smooth => return None,
-            CuticlePattern::Coronal => builder.coronal(),
-            CuticlePattern::IrregularWave => builder.irregular_wave(),
-            CuticlePattern::Mosaic => builder.mosaic(),
-            CuticlePattern::DiamondPetal => builder.diamond_petal(),
+            CuticlePattern::Coronal | CuticlePattern::CoronalDentate => builder.coronal(),
+            CuticlePattern::Mosaic
+            | CuticlePattern::MosaicRippled
+            | CuticlePattern::SquatPolygon => builder.mosaic(),
+            CuticlePattern::BroadPetal
+            | CuticlePattern::DiamondPetal
+            | CuticlePattern::LanceolatePetal
+            | CuticlePattern::OtterFin
+            | CuticlePattern::Pectinate => builder.diamond_petal(),
+            _ => builder.irregular_wave(),
         };
         pattern.normalize(cuticle);
         Some(pattern)

@@ -26,13 +26,16 @@ fn class(name: &str, groom: ClassGroom) -> HairClass {
                     jitter: 0.0,
                     roughness: 0.1,
                     riser_roughness: 0.3,
+                    ..Default::default()
                 },
                 medulla: Medulla {
                     ratio: 0.0,
                     kind: MedullaKind::None,
                     void_ior: 1.0003,
                     pigment: 0.0,
+                    ..Default::default()
                 },
+                ..Default::default()
             },
         }],
         pigment: vec![PigmentBand {

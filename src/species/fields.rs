@@ -93,11 +93,111 @@ const CUTICLE_FIELD: Field =
     Field::layered("cuticle", Kind::Table(&CUTICLE), "The scales outside.");
 const MEDULLA_FIELD: Field = Field::layered("medulla", Kind::Table(&MEDULLA), "The core.");
 
+const TWIST: Field = Field::optional(
+    "twist_turns_per_cm",
+    Kind::Number(number(-20.0, 20.0, "turns per cm")),
+    "Turns of the section about the axis; 0 when left out.",
+);
+const SECTION: Field = Field::optional(
+    "section",
+    Kind::Choice(SECTIONS),
+    "Shape of the cross-section; an ellipse when left out.",
+);
+const SQUARENESS: Field = Field::layered(
+    "squareness",
+    Kind::Number(number(2.0, 8.0, "")),
+    "Superellipse: exponent, 2 an ellipse, 8 nearly a box.",
+);
+const BEND: Field = Field::layered(
+    "bend",
+    Kind::Number(number(0.0, 0.6, "")),
+    "Concavo-convex: rise at the ends of the major axis over the half axis.",
+);
+const DENT: Field = Field::layered(
+    "dent",
+    Kind::Number(number(0.0, 0.4, "")),
+    "Bean: depth of the dent over the radius there.",
+);
+const CORTEX_FIELD: Field = Field::optional(
+    "cortex",
+    Kind::Table(&CORTEX),
+    "How pigment and air lie between cuticle and medulla; even and without air when left out.",
+);
+
+/// Sections, in the order of [`super::Section`].
+pub(crate) const SECTIONS: &[Choice] = &[
+    Choice {
+        name: "ellipse",
+        doc: "most hair; a circle with aspect 1",
+        keys: &[],
+    },
+    Choice {
+        name: "superellipse",
+        doc: "oblong with flat sides (rat)",
+        keys: &["squareness"],
+    },
+    Choice {
+        name: "dumb-bell",
+        doc: "Cassini oval, waisted beyond an aspect of 1.73 (rabbit, hare)",
+        keys: &[],
+    },
+    Choice {
+        name: "concavo-convex",
+        doc: "an ellipse bent along its major axis (mouse)",
+        keys: &["bend"],
+    },
+    Choice {
+        name: "bean",
+        doc: "an ellipse with a dent in one flat side",
+        keys: &["dent"],
+    },
+];
+
+static CORTEX: Shape = Shape {
+    name: "cortex",
+    doc: "Pigment and air between cuticle and medulla. What is left out is 0.",
+    cited: true,
+    fields: &[
+        Field::optional(
+            "toward_medulla",
+            Kind::Number(number(-1.0, 1.0, "")),
+            "How the pigment leans: -1 toward the cuticle, 0 even, 1 toward the medulla.",
+        ),
+        Field::optional(
+            "clear_rim",
+            Kind::Number(number(0.0, 0.9, "")),
+            "Share of the cortex under the cuticle without pigment.",
+        ),
+        Field::optional(
+            "streaks",
+            Kind::Number(number(0.0, 2.0, "")),
+            "Streaks of pigment along the axis: deviation of the logarithm of its density.",
+        ),
+        Field::optional(
+            "fusi_per_mm",
+            Kind::Number(number(0.0, 1000.0, "per mm")),
+            "Cortical fusi, slender slits of air, per millimeter of hair.",
+        ),
+    ],
+};
+
 static STRUCTURE: Shape = Shape {
     name: "structure",
     doc: "Cross-section, surface and interior of a fiber, as far as it is shared.",
     cited: true,
-    fields: &[DIAMETER, ASPECT, IOR, CUTICLE_FIELD, MEDULLA_FIELD],
+    fields: &[
+        DIAMETER,
+        ASPECT,
+        SECTION,
+        SQUARENESS,
+        BEND,
+        DENT,
+        TWIST,
+        IOR,
+        CUTICLE_FIELD,
+        CORTEX_FIELD,
+        MEDULLA_FIELD,
+    ],
 };
 
 static STATION: Shape = Shape {
@@ -113,8 +213,14 @@ static STATION: Shape = Shape {
         ),
         DIAMETER,
         ASPECT,
+        SECTION,
+        SQUARENESS,
+        BEND,
+        DENT,
+        TWIST,
         IOR,
         CUTICLE_FIELD,
+        CORTEX_FIELD,
         MEDULLA_FIELD,
     ],
 };
@@ -125,6 +231,9 @@ const SCALES: &[&str] = &[
     "around",
     "jitter",
     "riser_roughness",
+    "margin",
+    "wear",
+    "lifted",
 ];
 
 /// Scale patterns, in the order of [`super::CuticlePattern`].
@@ -140,8 +249,33 @@ pub(crate) const PATTERNS: &[Choice] = &[
         keys: SCALES,
     },
     Choice {
-        name: "irregular-wave",
-        doc: "wavy margins that change from row to row",
+        name: "coronal-dentate",
+        doc: "coronal with a toothed rim",
+        keys: SCALES,
+    },
+    Choice {
+        name: "broad-petal",
+        doc: "short wide petals",
+        keys: SCALES,
+    },
+    Choice {
+        name: "diamond-petal",
+        doc: "overlapping rhombic petals in alternating rows",
+        keys: SCALES,
+    },
+    Choice {
+        name: "lanceolate-petal",
+        doc: "long pointed petals",
+        keys: SCALES,
+    },
+    Choice {
+        name: "otter-fin",
+        doc: "four fins a level, the next level turned by half a fin",
+        keys: SCALES,
+    },
+    Choice {
+        name: "pectinate",
+        doc: "a comb of long narrow teeth",
         keys: SCALES,
     },
     Choice {
@@ -150,9 +284,78 @@ pub(crate) const PATTERNS: &[Choice] = &[
         keys: SCALES,
     },
     Choice {
-        name: "diamond-petal",
-        doc: "overlapping rhombic petals in alternating rows",
+        name: "mosaic-rippled",
+        doc: "mosaic with rippled outlines",
         keys: SCALES,
+    },
+    Choice {
+        name: "regular-wave",
+        doc: "equal waves in every row",
+        keys: SCALES,
+    },
+    Choice {
+        name: "irregular-wave",
+        doc: "wavy margins that change from row to row",
+        keys: SCALES,
+    },
+    Choice {
+        name: "close-wave",
+        doc: "near rows with small irregular ripples",
+        keys: SCALES,
+    },
+    Choice {
+        name: "single-chevron",
+        doc: "two V a turn",
+        keys: SCALES,
+    },
+    Choice {
+        name: "double-chevron",
+        doc: "four V a turn",
+        keys: SCALES,
+    },
+    Choice {
+        name: "human-imbricate",
+        doc: "human: irregular margins without a wave",
+        keys: SCALES,
+    },
+    Choice {
+        name: "torn-paper",
+        doc: "deep ragged margins",
+        keys: SCALES,
+    },
+    Choice {
+        name: "squat-polygon",
+        doc: "wide low polygons",
+        keys: SCALES,
+    },
+];
+
+/// Margin modifiers, in the order of [`super::Margin`].
+pub(crate) const MARGINS: &[Choice] = &[
+    Choice {
+        name: "smooth",
+        doc: "as the pattern gives it",
+        keys: &[],
+    },
+    Choice {
+        name: "crenate",
+        doc: "shallow pointed notches",
+        keys: &[],
+    },
+    Choice {
+        name: "rippled",
+        doc: "deeper rounded ripples",
+        keys: &[],
+    },
+    Choice {
+        name: "scalloped",
+        doc: "round lobes",
+        keys: &[],
+    },
+    Choice {
+        name: "dentate",
+        doc: "teeth",
+        keys: &[],
     },
 ];
 
@@ -196,6 +399,21 @@ static CUTICLE: Shape = Shape {
             Kind::Number(number(0.0, 1.0, "")),
             "GGX roughness (alpha) of the steps at the free edges.",
         ),
+        Field::optional(
+            "margin",
+            Kind::Choice(MARGINS),
+            "Fine shape of the free edges; smooth when left out.",
+        ),
+        Field::optional(
+            "wear",
+            Kind::Number(number(0.0, 0.9, "")),
+            "Share of scales that are worn away; 0 when left out, 0.3 at old tips.",
+        ),
+        Field::optional(
+            "lifted",
+            Kind::Number(number(0.0, 0.5, "")),
+            "Share of scales that damage has lifted by 5 to 15 degrees; 0 when left out.",
+        ),
     ],
 };
 
@@ -212,14 +430,68 @@ pub(crate) const MEDULLAE: &[Choice] = &[
         keys: &["pitch_um", "septum_um", "void_ior"],
     },
     Choice {
+        name: "multiserial",
+        doc: "multiserial ladder: columns of cells, rungs aligned across them",
+        keys: &["cell_um", "pitch_um", "septum_um", "void_ior"],
+    },
+    Choice {
+        name: "lattice",
+        doc: "close-packed polyhedra that fill almost the whole shaft",
+        keys: &["cell_um", "wall_um", "void_ior"],
+    },
+    Choice {
+        name: "s-channel",
+        doc: "wedge discs, thick left and right by turns, one air channel winding between them",
+        keys: &["pitch_um", "void_ior"],
+    },
+    Choice {
+        name: "cloisonne",
+        doc: "rows of flat ovals merged into H, X and Y shapes in a scalloped outline",
+        keys: &["columns", "pitch_um", "height_um", "void_ior"],
+    },
+    Choice {
+        name: "tire-tread",
+        doc: "rows of flat cells in a tube with bumps at every row",
+        keys: &["pitch_um", "cell_um", "septum_um", "void_ior"],
+    },
+    Choice {
+        name: "globules",
+        doc: "one column of globules of random size, a film of air round each",
+        keys: &["spacing", "film_um", "void_ior"],
+    },
+    Choice {
+        name: "amorphous",
+        doc: "no cells seen: fine bubbles",
+        keys: &["radius_um", "air_fraction", "void_ior"],
+    },
+    Choice {
         name: "froth",
         doc: "hard-core spheres of air, log-normal in size",
         keys: &["radius_um", "radius_sigma", "air_fraction", "void_ior"],
     },
     Choice {
         name: "medium",
-        doc: "cells below resolution: a homogeneous scattering medium",
+        doc: "a homogeneous scattering medium",
         keys: &["scattering_per_um", "asymmetry"],
+    },
+];
+
+/// Whether a medulla runs through, in the order of [`super::Continuity`].
+pub(crate) const CONTINUITIES: &[Choice] = &[
+    Choice {
+        name: "continuous",
+        doc: "without gaps",
+        keys: &[],
+    },
+    Choice {
+        name: "interrupted",
+        doc: "gaps shorter than the pieces: about 40 um after every 60 um",
+        keys: &[],
+    },
+    Choice {
+        name: "fragmentary",
+        doc: "isolated pieces: about 60 um every 260 um",
+        keys: &[],
     },
 ];
 
@@ -229,6 +501,11 @@ static MEDULLA: Shape = Shape {
     cited: true,
     fields: &[
         Field::layered("kind", Kind::Choice(MEDULLAE), "What fills it."),
+        Field::optional(
+            "continuity",
+            Kind::Choice(CONTINUITIES),
+            "Whether it runs through; continuous when left out.",
+        ),
         Field::layered(
             "ratio",
             Kind::Number(number(0.0, 0.95, "")),
@@ -247,17 +524,47 @@ static MEDULLA: Shape = Shape {
         Field::layered(
             "pitch_um",
             Kind::Number(number(1.0, 200.0, "um")),
-            "Ladder: distance between rungs.",
+            "Distance between rungs, rows or discs.",
         ),
         Field::layered(
             "septum_um",
             Kind::Number(number(0.05, 100.0, "um")),
-            "Ladder: wall between two voids.",
+            "Wall between two voids.",
+        ),
+        Field::layered(
+            "cell_um",
+            Kind::Number(number(1.0, 200.0, "um")),
+            "Multiserial, lattice, tire-tread: width of a cell.",
+        ),
+        Field::layered(
+            "wall_um",
+            Kind::Number(number(0.1, 20.0, "um")),
+            "Lattice: wall between two cells.",
+        ),
+        Field::layered(
+            "columns",
+            Kind::Whole(number(1.0, 12.0, "")),
+            "Cloisonne: ovals across.",
+        ),
+        Field::layered(
+            "height_um",
+            Kind::Number(number(0.5, 100.0, "um")),
+            "Cloisonne: height of an oval along the hair.",
+        ),
+        Field::layered(
+            "spacing",
+            Kind::Number(number(0.6, 3.0, "")),
+            "Globules: mean distance over the medulla's diameter.",
+        ),
+        Field::layered(
+            "film_um",
+            Kind::Number(number(0.1, 20.0, "um")),
+            "Globules: thickness of the air round each.",
         ),
         Field::layered(
             "radius_um",
             Kind::Number(number(0.2, 100.0, "um")),
-            "Froth: median radius of a void.",
+            "Froth, amorphous: median radius of a void.",
         ),
         Field::layered(
             "radius_sigma",
@@ -267,7 +574,7 @@ static MEDULLA: Shape = Shape {
         Field::layered(
             "air_fraction",
             Kind::Number(number(0.0, 0.5, "")),
-            "Froth: share of the medulla's volume that is air.",
+            "Froth, amorphous: share of the medulla's volume that is air.",
         ),
         Field::layered(
             "scattering_per_um",

@@ -25,13 +25,16 @@ pub(super) fn structure(
             jitter: 1.0,
             roughness: 0.1,
             riser_roughness: 0.3,
+            ..Default::default()
         },
         medulla: Medulla {
             ratio,
             kind,
             void_ior: 1.0003,
             pigment: 1.0,
+            ..Default::default()
         },
+        ..Default::default()
     }
 }
 

@@ -3,7 +3,10 @@
 use super::{Reader, number, number_of, place_of, tables};
 use crate::species::check::{Checked, Item, Value, join};
 use crate::species::error::Place;
-use crate::species::model::{Cuticle, CuticlePattern, Medulla, MedullaKind, Station, Structure};
+use crate::species::model::{
+    Continuity, Cortex, Cuticle, CuticlePattern, Margin, Medulla, MedullaKind, Section, Station,
+    Structure,
+};
 
 /// Index of air, for fibers without voids where nothing reads it.
 const AIR: f64 = 1.0003;
@@ -34,6 +37,19 @@ impl<'a> Layers<'a> {
     /// Where the value of `key` was written.
     fn place(&self, key: &str) -> &'a Place {
         self.find(key).map_or(self.place, |i| &i.place)
+    }
+
+    /// A number that may be left out.
+    fn number_or(&self, key: &str, default: f64) -> f64 {
+        self.find(key).and_then(number_of).unwrap_or(default)
+    }
+
+    /// A word that may be left out.
+    fn word(&self, key: &str) -> Option<&'static str> {
+        match self.find(key)?.value {
+            Value::Choice(name) => Some(name),
+            _ => None,
+        }
     }
 
     /// The tables behind `key`.
@@ -104,32 +120,70 @@ impl Reader<'_> {
         let medulla = self
             .inner(layers, "medulla")
             .and_then(|l| self.medulla(&l, thin_radius_um));
+        let section = self.section(layers);
+        let cortex = Self::cortex(&layers.inner("cortex"));
         Some(Structure {
             diameter_um: diameter_um?,
             aspect: aspect?,
+            section: section?,
+            twist_turns_per_cm: layers.number_or("twist_turns_per_cm", 0.0),
             ior: ior?,
             cuticle: cuticle?,
+            cortex,
             medulla: medulla?,
         })
+    }
+
+    fn section(&mut self, layers: &Layers<'_>) -> Option<Section> {
+        Some(match layers.word("section") {
+            Some("superellipse") => Section::Superellipse {
+                squareness: self.layered(layers, "squareness")?,
+            },
+            Some("dumb-bell") => Section::DumbBell,
+            Some("concavo-convex") => Section::ConcavoConvex {
+                bend: self.layered(layers, "bend")?,
+            },
+            Some("bean") => Section::Bean {
+                dent: self.layered(layers, "dent")?,
+            },
+            _ => Section::Ellipse,
+        })
+    }
+
+    fn cortex(layers: &Layers<'_>) -> Cortex {
+        Cortex {
+            toward_medulla: layers.number_or("toward_medulla", 0.0),
+            clear_rim: layers.number_or("clear_rim", 0.0),
+            streaks: layers.number_or("streaks", 0.0),
+            fusi_per_mm: layers.number_or("fusi_per_mm", 0.0),
+        }
     }
 
     fn cuticle(&mut self, layers: &Layers<'_>, thin_radius_um: Option<f64>) -> Option<Cuticle> {
         let roughness = self.layered(layers, "roughness");
         let pattern = match self.choice(layers, "pattern")? {
             "coronal" => CuticlePattern::Coronal,
-            "irregular-wave" => CuticlePattern::IrregularWave,
-            "mosaic" => CuticlePattern::Mosaic,
+            "coronal-dentate" => CuticlePattern::CoronalDentate,
+            "broad-petal" => CuticlePattern::BroadPetal,
             "diamond-petal" => CuticlePattern::DiamondPetal,
+            "lanceolate-petal" => CuticlePattern::LanceolatePetal,
+            "otter-fin" => CuticlePattern::OtterFin,
+            "pectinate" => CuticlePattern::Pectinate,
+            "mosaic" => CuticlePattern::Mosaic,
+            "mosaic-rippled" => CuticlePattern::MosaicRippled,
+            "regular-wave" => CuticlePattern::RegularWave,
+            "irregular-wave" => CuticlePattern::IrregularWave,
+            "close-wave" => CuticlePattern::CloseWave,
+            "single-chevron" => CuticlePattern::SingleChevron,
+            "double-chevron" => CuticlePattern::DoubleChevron,
+            "human-imbricate" => CuticlePattern::HumanImbricate,
+            "torn-paper" => CuticlePattern::TornPaper,
+            "squat-polygon" => CuticlePattern::SquatPolygon,
             _ => {
                 // Scales of no height: nothing reads the other numbers.
                 return Some(Cuticle {
-                    pattern: CuticlePattern::Smooth,
-                    pitch_um: 10.0,
-                    height_um: 0.0,
-                    around: 1,
-                    jitter: 0.0,
                     roughness: roughness?,
-                    riser_roughness: 0.0,
+                    ..Cuticle::default()
                 });
             }
         };
@@ -168,7 +222,13 @@ impl Reader<'_> {
         }
         let tiled = matches!(
             pattern,
-            CuticlePattern::Mosaic | CuticlePattern::DiamondPetal
+            CuticlePattern::Mosaic
+                | CuticlePattern::MosaicRippled
+                | CuticlePattern::SquatPolygon
+                | CuticlePattern::BroadPetal
+                | CuticlePattern::DiamondPetal
+                | CuticlePattern::LanceolatePetal
+                | CuticlePattern::OtterFin
         );
         if let Some(count) = around
             && tiled
@@ -188,6 +248,15 @@ impl Reader<'_> {
             height_um: height_um?,
             around: around? as u32,
             jitter: jitter?,
+            margin: match layers.word("margin") {
+                Some("crenate") => Margin::Crenate,
+                Some("rippled") => Margin::Rippled,
+                Some("scalloped") => Margin::Scalloped,
+                Some("dentate") => Margin::Dentate,
+                _ => Margin::Smooth,
+            },
+            wear: layers.number_or("wear", 0.0),
+            lifted: layers.number_or("lifted", 0.0),
             roughness: roughness?,
             riser_roughness: riser_roughness?,
         })
@@ -208,12 +277,7 @@ impl Reader<'_> {
                     "choose a `kind` or set the ratio to 0",
                 );
             }
-            return Some(Medulla {
-                ratio: 0.0,
-                kind: MedullaKind::None,
-                void_ior: AIR,
-                pigment: 1.0,
-            });
+            return Some(Medulla::default());
         }
         let ratio = self.layered(layers, "ratio");
         let pigment = self.layered(layers, "pigment");
@@ -222,17 +286,33 @@ impl Reader<'_> {
             self.conflict(layers.place("ratio"), message, "or set `kind` to \"none\"");
         }
         let radius_um = thin_radius_um.zip(ratio).map(|(r, m)| r * m);
-        let (kind, void_ior) = match kind {
-            "ladder" => (self.ladder(layers), self.layered(layers, "void_ior")),
-            "froth" => (
-                self.froth(layers, radius_um),
-                self.layered(layers, "void_ior"),
-            ),
-            _ => (self.medium(layers), Some(AIR)),
+        let void_ior = if kind == "medium" {
+            Some(AIR)
+        } else {
+            self.layered(layers, "void_ior")
+        };
+        let kind = match kind {
+            "ladder" => self.ladder(layers),
+            "multiserial" => self.multiserial(layers),
+            "lattice" => self.lattice(layers),
+            "s-channel" => self
+                .layered(layers, "pitch_um")
+                .map(|pitch_um| MedullaKind::SChannel { pitch_um }),
+            "cloisonne" => self.cloisonne(layers),
+            "tire-tread" => self.tire_tread(layers),
+            "globules" => self.globules(layers),
+            "amorphous" => self.amorphous(layers),
+            "froth" => self.froth(layers, radius_um),
+            _ => self.medium(layers),
         };
         Some(Medulla {
             ratio: ratio?,
             kind: kind?,
+            continuity: match layers.word("continuity") {
+                Some("interrupted") => Continuity::Interrupted,
+                Some("fragmentary") => Continuity::Fragmentary,
+                _ => Continuity::Continuous,
+            },
             void_ior: void_ior?,
             pigment: pigment?,
         })
@@ -240,22 +320,94 @@ impl Reader<'_> {
 
     fn ladder(&mut self, layers: &Layers<'_>) -> Option<MedullaKind> {
         let pitch_um = self.layered(layers, "pitch_um");
-        let septum_um = self.layered(layers, "septum_um");
-        let (pitch_um, septum_um) = (pitch_um?, septum_um?);
-        if septum_um >= pitch_um {
-            let path = join(&layers.path, "septum_um");
-            let message =
-                format!("`{path}` is {septum_um}, expected less than the pitch of {pitch_um} um");
-            self.conflict(
-                layers.place("septum_um"),
-                message,
-                "the rest of the pitch is the void",
-            );
-        }
+        let septum_um = self.part_of(layers, "septum_um", pitch_um, "pitch");
         Some(MedullaKind::Ladder {
-            pitch_um,
-            septum_um,
+            pitch_um: pitch_um?,
+            septum_um: septum_um?,
         })
+    }
+
+    fn multiserial(&mut self, layers: &Layers<'_>) -> Option<MedullaKind> {
+        let cell_um = self.layered(layers, "cell_um");
+        let pitch_um = self.layered(layers, "pitch_um");
+        let least = cell_um.zip(pitch_um).map(|(c, p)| c.min(p));
+        let septum_um = self.part_of(layers, "septum_um", least, "cell");
+        Some(MedullaKind::Multiserial {
+            cell_um: cell_um?,
+            pitch_um: pitch_um?,
+            septum_um: septum_um?,
+        })
+    }
+
+    fn lattice(&mut self, layers: &Layers<'_>) -> Option<MedullaKind> {
+        let cell_um = self.layered(layers, "cell_um");
+        let wall_um = self.part_of(layers, "wall_um", cell_um, "cell");
+        Some(MedullaKind::Lattice {
+            cell_um: cell_um?,
+            wall_um: wall_um?,
+        })
+    }
+
+    fn cloisonne(&mut self, layers: &Layers<'_>) -> Option<MedullaKind> {
+        let columns = self.layered(layers, "columns");
+        let pitch_um = self.layered(layers, "pitch_um");
+        let height_um = self.part_of(layers, "height_um", pitch_um, "pitch");
+        Some(MedullaKind::Cloisonne {
+            columns: columns? as u32,
+            pitch_um: pitch_um?,
+            height_um: height_um?,
+        })
+    }
+
+    fn tire_tread(&mut self, layers: &Layers<'_>) -> Option<MedullaKind> {
+        let pitch_um = self.layered(layers, "pitch_um");
+        let cell_um = self.layered(layers, "cell_um");
+        let least = cell_um.zip(pitch_um).map(|(c, p)| c.min(p));
+        let septum_um = self.part_of(layers, "septum_um", least, "cell");
+        Some(MedullaKind::TireTread {
+            pitch_um: pitch_um?,
+            cell_um: cell_um?,
+            septum_um: septum_um?,
+        })
+    }
+
+    fn globules(&mut self, layers: &Layers<'_>) -> Option<MedullaKind> {
+        let spacing = self.layered(layers, "spacing");
+        let film_um = self.layered(layers, "film_um");
+        Some(MedullaKind::Globules {
+            spacing: spacing?,
+            film_um: film_um?,
+        })
+    }
+
+    fn amorphous(&mut self, layers: &Layers<'_>) -> Option<MedullaKind> {
+        let radius_um = self.layered(layers, "radius_um");
+        let air_fraction = self.layered(layers, "air_fraction");
+        Some(MedullaKind::Amorphous {
+            radius_um: radius_um?,
+            air_fraction: air_fraction?,
+        })
+    }
+
+    /// A length that must be less than `whole`.
+    fn part_of(
+        &mut self,
+        layers: &Layers<'_>,
+        key: &str,
+        whole: Option<f64>,
+        name: &str,
+    ) -> Option<f64> {
+        let part = self.layered(layers, key)?;
+        if let Some(whole) = whole
+            && part >= whole
+        {
+            let path = join(&layers.path, key);
+            let message =
+                format!("`{path}` is {part}, expected less than the {name} of {whole} um");
+            let hint = format!("the rest of the {name} is the void");
+            self.conflict(layers.place(key), message, &hint);
+        }
+        Some(part)
     }
 
     fn froth(&mut self, layers: &Layers<'_>, medulla_um: Option<f64>) -> Option<MedullaKind> {
