@@ -13,7 +13,7 @@ mod tally;
 
 pub use cache::{Cache, CacheSize};
 pub use content::content_hash;
-pub use photon::{End, Flight, Photon, fly};
+pub use photon::{End, Flight, Photon, fly, follow};
 
 use crate::blame::Blame;
 use crate::fiber::{Fiber, FiberError};

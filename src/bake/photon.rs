@@ -1,7 +1,7 @@
 //! One photon through one fiber: a function of (fiber, photon) and nothing else.
 
 use super::microfacet;
-use crate::fiber::{Fiber, Region};
+use crate::fiber::{Fiber, Hit, Region};
 use crate::sampling::Rng;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
@@ -57,7 +57,7 @@ pub fn fly(fiber: &Fiber, photon: &Photon, max_events: u32) -> Flight {
     let (lo, hi) = photon.sin_range;
     let sin = lo + (hi - lo) * along;
     let cos = (1.0 - sin * sin).max(0.0).sqrt();
-    let mut flight = Flight {
+    let flight = Flight {
         theta: sin.atan2(cos),
         path_um: 0.0,
         events: 0,
@@ -65,7 +65,7 @@ pub fn fly(fiber: &Fiber, photon: &Photon, max_events: u32) -> Flight {
     };
 
     let turn = DVec2::from_angle(TAU * rng.uniform());
-    let mut dir = rotate(DVec3::new(-cos, 0.0, -sin), turn);
+    let dir = rotate(DVec3::new(-cos, 0.0, -sin), turn);
     let radius = fiber.bounding_radius_um();
     let mut h = 2.0 * across - 1.0;
     let mut entry = None;
@@ -80,8 +80,39 @@ pub fn fly(fiber: &Fiber, photon: &Photon, max_events: u32) -> Flight {
         }
         h = 2.0 * rng.uniform() - 1.0;
     }
-    let Some((mut p, mut hit)) = entry else {
+    let Some((p, hit)) = entry else {
         return flight;
+    };
+    let way = follow(fiber, p, dir, hit, &mut rng, max_events);
+    let back = DVec2::new(turn.x, -turn.y);
+    Flight {
+        theta: flight.theta,
+        end: match way.end {
+            End::Escaped(dir) => End::Escaped(rotate(dir, back)),
+            other => other,
+        },
+        ..way
+    }
+}
+
+/// Follows a photon that comes from outside and has just met the fiber, by chance, until it leaves.
+///
+/// * `p`, `dir`, `hit`: where it meets the fiber, its unit direction, and what it meets there.
+/// * The directions of the result are in the fiber's frame; `theta` is that of the light's source.
+#[inline]
+pub fn follow(
+    fiber: &Fiber,
+    mut p: DVec3,
+    mut dir: DVec3,
+    mut hit: Hit,
+    rng: &mut Rng,
+    max_events: u32,
+) -> Flight {
+    let mut flight = Flight {
+        theta: -dir.z.clamp(-1.0, 1.0).asin(),
+        path_um: 0.0,
+        events: 0,
+        end: End::Missed,
     };
 
     let mut region = Region::Outside;
@@ -97,9 +128,9 @@ pub fn fly(fiber: &Fiber, photon: &Photon, max_events: u32) -> Flight {
         } else {
             flight.events += 1;
             let turned = if hit.roughness > 0.0 {
-                microfacet::rough(dir, hit.normal, ratio, hit.roughness, &mut rng)
+                microfacet::rough(dir, hit.normal, ratio, hit.roughness, rng)
             } else {
-                Some(microfacet::smooth(dir, hit.normal, ratio, &mut rng))
+                Some(microfacet::smooth(dir, hit.normal, ratio, rng))
             };
             let Some(turned) = turned else {
                 flight.end = End::Lost;
@@ -116,7 +147,7 @@ pub fn fly(fiber: &Fiber, photon: &Photon, max_events: u32) -> Flight {
             let next = fiber.next_hit(p, dir, region, from);
             if region == Region::Outside {
                 match next {
-                    None => flight.end = End::Escaped(rotate(dir, DVec2::new(turn.x, -turn.y))),
+                    None => flight.end = End::Escaped(dir),
                     Some(_) if flight.events >= max_events => flight.end = End::Truncated,
                     Some(hit) => break hit,
                 }
@@ -136,7 +167,7 @@ pub fn fly(fiber: &Fiber, photon: &Photon, max_events: u32) -> Flight {
                     flight.events += 1;
                     flight.path_um += free * medium.pigment;
                     p += free * dir;
-                    dir = henyey_greenstein(dir, medium.asymmetry, &mut rng);
+                    dir = henyey_greenstein(dir, medium.asymmetry, rng);
                     from = None;
                     continue;
                 }

@@ -34,7 +34,7 @@ use surface::{Inward, OuterHit, OuterState, Surface};
 /// What fills the space between boundaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Region {
-    /// Air around the fiber.
+    /// Around the fiber: air, or what it is mounted in.
     Outside,
     /// Pigmented keratin: cuticle, cortex, and the medulla's walls between its voids.
     Cortex,
@@ -134,6 +134,7 @@ impl Fiber {
         };
         let medulla = Medulla::new(structure, &section, surface.rho_min(), period_um, seed)?;
         let media = media(structure);
+        let eta = indices_between(&media);
         Ok(Self {
             structure: structure.clone(),
             section,
@@ -141,8 +142,18 @@ impl Fiber {
             medulla,
             period_um,
             media,
-            eta: media.map(|near| media.map(|far| far.ior / near.ior)),
+            eta,
         })
+    }
+
+    /// The same fiber in another medium than air: the resin under a cover slip, water.
+    ///
+    /// * `ior`: refractive index of the medium, 1 or more.
+    #[must_use]
+    pub fn mounted_in(mut self, ior: f64) -> Self {
+        self.media[Region::Outside as usize].ior = ior;
+        self.eta = indices_between(&self.media);
+        self
     }
 
     /// The structure it was built from.
@@ -353,6 +364,11 @@ impl Fiber {
             state: HitState { element },
         }
     }
+}
+
+/// Index of the second region over that of the first.
+fn indices_between(media: &[Medium; 4]) -> [[f64; 4]; 4] {
+    media.map(|near| media.map(|far| far.ior / near.ior))
 }
 
 /// The media of the regions, in their order.
