@@ -11,6 +11,9 @@ impl From<SpeciesError> for Failure {
         let blame = error.blame();
         match error {
             SpeciesError::UnknownName { ref hint, .. } => Self::with_help(blame, &error, hint),
+            SpeciesError::Ambiguous { .. } => {
+                Self::with_help(blame, &error, "give the id of one of them")
+            }
             SpeciesError::File(error) => Self::new(blame, error),
             SpeciesError::Invalid(errors) => Self {
                 blame,

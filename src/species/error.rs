@@ -16,6 +16,14 @@ pub enum SpeciesError {
         /// What to do: the closest names, or all of them.
         hint: String,
     },
+    /// Several built-in species are called so.
+    #[error("\"{}\" may be {}", printable(name), ids.join(" or "))]
+    Ambiguous {
+        /// What was asked for.
+        name: String,
+        /// The ids of the species.
+        ids: Vec<&'static str>,
+    },
     /// The file could not be read.
     #[error(transparent)]
     File(#[from] FileError),
@@ -29,7 +37,7 @@ impl SpeciesError {
     pub fn blame(&self) -> Blame {
         match self {
             Self::File(error) => error.blame(),
-            Self::UnknownName { .. } | Self::Invalid(_) => Blame::Input,
+            Self::UnknownName { .. } | Self::Ambiguous { .. } | Self::Invalid(_) => Blame::Input,
         }
     }
 }

@@ -10,6 +10,17 @@ pub(crate) static SPECIES: Shape = Shape {
     fields: &[
         Field::required("name", Kind::Text(100), "Common name."),
         Field::optional("latin", Kind::Text(100), "Scientific name."),
+        Field::optional("family", Kind::Text(60), "Scientific family, `Canidae`."),
+        Field::optional(
+            "group",
+            Kind::Text(60),
+            "Family for people, `Dogs and foxes`; lists are ordered by it.",
+        ),
+        Field::optional(
+            "synonyms",
+            Kind::Texts(16, 60),
+            "Other common names and former scientific ones.",
+        ),
         Field::required(
             "summary",
             Kind::Text(1000),

@@ -1,32 +1,52 @@
 //! The built-in species, part of the program.
 
-/// Id and file text of every built-in species, in the order of the library.
-pub const LIBRARY: [(&str, &str); 5] = [
-    (
-        "red-fox",
-        include_str!("../../procedural/species/red-fox.toml"),
-    ),
-    (
-        "polar-bear",
-        include_str!("../../procedural/species/polar-bear.toml"),
-    ),
-    ("mink", include_str!("../../procedural/species/mink.toml")),
-    ("human", include_str!("../../procedural/species/human.toml")),
-    (
-        "glass-cylinder",
-        include_str!("../../procedural/species/glass-cylinder.toml"),
-    ),
+/// One line a species: its id, which is the name of its file.
+macro_rules! library {
+    ($($id:literal)*) => {
+        &[$(($id, include_str!(concat!("../../procedural/species/", $id, ".toml")))),*]
+    };
+}
+
+/// Id and file text of every built-in species, family by family.
+#[rustfmt::skip]
+pub const LIBRARY: &[(&str, &str)] = library![
+    // Cats: Felidae
+
+    // Dogs and foxes: Canidae
+    "red-fox"
+
+    // Raccoons: Procyonidae
+
+    // Weasels: Mustelidae
+    "mink"
+
+    // Bears: Ursidae
+    "polar-bear"
+
+    // Seals: Phocidae, Otariidae
+
+    // Rabbits and hares: Leporidae
+
+    // Rodents: Muridae, Sciuridae, Chinchillidae, Castoridae
+
+    // Deer: Cervidae
+
+    // Cattle, sheep and goats: Bovidae
+
+    // Camels: Camelidae
+
+    // Horses: Equidae
+
+    // Bats: Vespertilionidae
+
+    // People: Hominidae
+    "human"
+
+    // No animals
+    "glass-cylinder"
 ];
 
 /// The ids of the built-in species.
 pub fn ids() -> impl Iterator<Item = &'static str> {
     LIBRARY.iter().map(|(id, _)| *id)
-}
-
-/// The file text of a built-in species.
-pub(super) fn text_of(id: &str) -> Option<&'static str> {
-    LIBRARY
-        .iter()
-        .find(|(known, _)| *known == id)
-        .map(|(_, text)| *text)
 }

@@ -9,6 +9,7 @@ mod check;
 mod error;
 mod fields;
 mod library;
+mod lookup;
 pub mod model;
 mod origin;
 mod overrides;
@@ -23,7 +24,7 @@ pub use origin::{Cited, Origin, Origins, Reference};
 pub use schema::json_schema;
 
 use crate::io::{FileError, read_bounded};
-use error::{Problems, closest};
+use error::Problems;
 use std::io::{Error, ErrorKind};
 use std::path::Path;
 
@@ -32,11 +33,12 @@ const FILE_LIMIT: u64 = 4 << 20;
 
 /// Loads a species.
 ///
-/// * `name_or_path`: id of a built-in species, or a path that ends in `.toml`.
+/// * `name_or_path`: a built-in species by its id, a common or scientific name or one distinctive
+///   word of them (`fox`, `Vulpes vulpes`), in any case; or a path that ends in `.toml`.
 /// * `overrides`: `key.path=value` each, applied in order.
 ///
 /// # Errors
-/// An unknown name, an unreadable file, or everything that is wrong with the file and the overrides.
+/// An unknown or ambiguous name, an unreadable file, or everything that is wrong with the file and the overrides.
 pub fn load(name_or_path: &str, overrides: &[String]) -> Result<Species, SpeciesError> {
     load_with_origins(name_or_path, overrides).map(|(species, _)| species)
 }
@@ -46,16 +48,13 @@ pub fn load_with_origins(
     name_or_path: &str,
     overrides: &[String],
 ) -> Result<(Species, Origins), SpeciesError> {
-    if let Some(text) = library::text_of(name_or_path) {
-        let file = format!("{name_or_path}.toml");
-        return Ok(parse(text, name_or_path, &file, overrides)?);
-    }
     let path = Path::new(name_or_path);
     let is_file = path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("toml"));
     if !is_file {
-        return Err(unknown_name(name_or_path));
+        let (id, text) = lookup::find(name_or_path)?;
+        return Ok(parse(text, id, &format!("{id}.toml"), overrides)?);
     }
     let bytes = read_bounded(path, FILE_LIMIT)?;
     let text = String::from_utf8(bytes).map_err(|e| {
@@ -99,21 +98,6 @@ pub fn parse(
     match build::build(&checked, id, full_text, &mut problems) {
         Some(species) if problems.is_empty() => Ok((species, origins)),
         _ => Err(refuse(problems)),
-    }
-}
-
-fn unknown_name(name: &str) -> SpeciesError {
-    let known = ids().collect::<Vec<_>>().join(", ");
-    let hint = match closest(name, ids()) {
-        Some(one) => format!("did you mean {one}? Built in are {known}"),
-        None if Path::new(name).is_file() => {
-            format!("the name of a species file ends in .toml. Built in are {known}")
-        }
-        None => format!("built in are {known}; or give the path of a .toml file"),
-    };
-    SpeciesError::UnknownName {
-        name: name.to_owned(),
-        hint,
     }
 }
 

@@ -12,6 +12,12 @@ pub struct Species {
     pub name: String,
     /// Scientific name, `Vulpes vulpes`; empty for made-up fibers.
     pub latin: String,
+    /// Scientific family, `Canidae`; empty for made-up fibers.
+    pub family: String,
+    /// Family for people, `Dogs and foxes`; the library lists by it. Empty if the file names none.
+    pub group: String,
+    /// Other common names and former scientific ones; a built-in species is found by them.
+    pub synonyms: Vec<String>,
     /// One or two sentences for people who browse the library.
     pub summary: String,
     /// Hair classes, the most visible (`guard`) first; never empty.

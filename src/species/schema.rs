@@ -47,6 +47,12 @@ fn table(shape: &Shape, definitions: &mut Map<String, Value>) -> Value {
 fn property(field: &Field, definitions: &mut Map<String, Value>) -> Value {
     let mut value = match &field.kind {
         Kind::Text(limit) => text(*limit),
+        Kind::Texts(most, limit) => json!({
+            "type": "array",
+            "maxItems": most,
+            "uniqueItems": true,
+            "items": text(*limit),
+        }),
         Kind::Names => json!({
             "type": "array",
             "minItems": 1,

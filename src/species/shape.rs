@@ -45,6 +45,8 @@ pub(crate) struct Choice {
 pub(crate) enum Kind {
     /// Text of at most so many characters.
     Text(usize),
+    /// A list of at most so many texts of at most so many characters, no two alike.
+    Texts(usize, usize),
     /// Names of hair classes: each is the key of a table of the root.
     Names,
     /// Table of free keys with literature references.

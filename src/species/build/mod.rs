@@ -42,14 +42,16 @@ pub(crate) fn build(
             }
         }
     }
-    let latin = text_of(root, "latin").unwrap_or_default();
     if !complete || classes.is_empty() {
         return None;
     }
     Some(Species {
         id: id.to_owned(),
         name: text_of(root, "name")?,
-        latin,
+        latin: text_of(root, "latin").unwrap_or_default(),
+        family: text_of(root, "family").unwrap_or_default(),
+        group: text_of(root, "group").unwrap_or_default(),
+        synonyms: texts(root, "synonyms"),
         summary: text_of(root, "summary")?,
         classes,
         skin_color: skin?.try_into().ok()?,
@@ -130,6 +132,13 @@ fn text_of(parent: &Checked, key: &str) -> Option<String> {
     match &parent.get(key)?.value {
         Value::Text(text) => Some(text.clone()),
         _ => None,
+    }
+}
+
+fn texts(parent: &Checked, key: &str) -> Vec<String> {
+    match parent.get(key).map(|i| &i.value) {
+        Some(Value::Texts(texts)) => texts.clone(),
+        _ => Vec::new(),
     }
 }
 

@@ -266,7 +266,9 @@ impl Reader<'_> {
         let kind = self.choice(layers, "kind")?;
         let ratio_path = join(&layers.path, "ratio");
         if kind == "none" {
-            let ratio = layers.find("ratio").and_then(number_of);
+            // A ratio from an outer table is for the stations that have a medulla.
+            let here = layers.tables.iter().find(|t| t.get("kind").is_some());
+            let ratio = here.and_then(|t| number(t, "ratio"));
             if let Some(ratio) = ratio
                 && ratio != 0.0
             {

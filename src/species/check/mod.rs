@@ -46,6 +46,8 @@ pub(crate) enum Value {
     Text(String),
     /// One of the allowed words.
     Choice(&'static str),
+    /// Texts, no two alike.
+    Texts(Vec<String>),
     /// Names of hair classes.
     Names(Vec<String>),
     /// A table.

@@ -17,6 +17,7 @@ impl Checker<'_> {
     ) -> Value {
         match &field.kind {
             Kind::Text(limit) => self.text(node, path, *limit),
+            Kind::Texts(most, limit) => self.texts(node, path, *most, *limit),
             Kind::Names => self.names(node, path),
             Kind::Sources => self.sources(node, path),
             Kind::Choice(choices) => self.choice(node, path, choices),
@@ -51,6 +52,32 @@ impl Checker<'_> {
         }
         let expected = format!("text of 1 to {limit} characters, none of them a control character");
         self.wrong(node, path, &expected)
+    }
+
+    fn texts(&mut self, node: &Node, path: &str, most: usize, limit: usize) -> Value {
+        let expected = format!("a list of at most {most} texts");
+        let Data::Array(items) = &node.data else {
+            return self.wrong(node, path, &expected);
+        };
+        if items.len() > most {
+            return self.wrong(node, path, &expected);
+        }
+        let mut texts: Vec<String> = Vec::new();
+        for (index, item) in items.iter().enumerate() {
+            let path = format!("{path}.{index}");
+            match self.text(item, &path, limit) {
+                Value::Text(text) if texts.contains(&text) => {
+                    self.wrong(item, &path, "each text once");
+                }
+                Value::Text(text) => texts.push(text),
+                _ => {}
+            }
+        }
+        if texts.len() == items.len() {
+            Value::Texts(texts)
+        } else {
+            Value::Refused
+        }
     }
 
     fn names(&mut self, node: &Node, path: &str) -> Value {

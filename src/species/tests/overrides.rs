@@ -6,7 +6,7 @@ use super::{refusals, set};
 #[test]
 fn overrides_reach_every_kind_of_field() {
     let fox = set(
-        "red-fox",
+        "fox",
         &[
             "name=Blue fox",
             "latin = \"Vulpes sp.\"",
@@ -90,7 +90,7 @@ fn a_wrong_override_is_named_as_the_user_wrote_it() {
         ("classes=[\"guard\"]", "unknown key `under`"),
     ];
     for (text, expected) in cases {
-        let lines = refusals(set("red-fox", &[text]));
+        let lines = refusals(set("fox", &[text]));
         assert_eq!(lines.len(), 1, "{text}: {lines:?}");
         assert!(lines[0].contains(expected), "{text}: {lines:?}");
     }

@@ -28,7 +28,7 @@ const FAULTS: [(&str, &str); 12] = [
 
 #[test]
 fn as_many_reports_as_faults() {
-    let text = text_of("red-fox");
+    let text = text_of("fox");
     // All subsets of three neighbors and all prefixes: faults meet in every combination that could
     // hide one another.
     let all: Vec<usize> = (0..FAULTS.len()).collect();
@@ -55,7 +55,7 @@ fn as_many_reports_as_faults() {
 
 #[test]
 fn a_misspelt_key_suggests_the_right_one() {
-    for id in ids() {
+    for id in ["every-key", "fox"] {
         let text = text_of(id);
         let mut start = 0;
         for line in text.lines() {
@@ -108,8 +108,8 @@ fn hostile_texts_are_refused_without_a_crash() {
             "{shown}"
         );
     }
-    for cut in (0..text_of("mink").len()).step_by(97) {
-        assert!(read(&text_of("mink")[..cut]).is_err());
+    for cut in (0..text_of("fox").len()).step_by(97) {
+        assert!(read(&text_of("fox")[..cut]).is_err());
     }
 }
 
@@ -153,7 +153,7 @@ fn files_are_bounded_and_text() {
         std::fs::write(&path, bytes).unwrap();
         path.to_str().unwrap().to_owned()
     };
-    let good = write("my-fox.toml", text_of("red-fox").as_bytes());
+    let good = write("my-fox.toml", text_of("fox").as_bytes());
     assert_eq!(load(&good, &[]).unwrap().id, "my-fox");
     let latin = write("latin.toml", b"name = \"\xe9\"");
     assert!(
