@@ -17,24 +17,22 @@ pub(super) fn find(name: &str) -> Result<(&'static str, &'static str), SpeciesEr
         return Ok(*entry);
     }
     let wanted = plain(name);
-    let whole = |names: &[String]| names.contains(&wanted);
-    let words = |names: &[String]| names.iter().any(|n| has_words(n, &wanted));
-    let tests: [&dyn Fn(&[String]) -> bool; 2] = [&whole, &words];
-    for test in tests {
-        let called = |(id, text): &&(&str, &str)| test(&names_of(id, text));
-        let found: Vec<_> = LIBRARY.iter().filter(called).collect();
-        match found[..] {
-            [] => {}
-            [one] => return Ok(*one),
-            _ => {
-                return Err(SpeciesError::Ambiguous {
-                    name: name.to_owned(),
-                    ids: found.iter().map(|(id, _)| *id).collect(),
-                });
-            }
-        }
+    let whole = |n: &str| n == wanted;
+    let words = |n: &str| has_words(n, &wanted);
+    match (&called(whole)[..], &called(words)[..]) {
+        ([], []) => Err(unknown(name)),
+        ([one], _) | ([], [one]) => Ok(*one),
+        ([], several) | (several, _) => Err(SpeciesError::Ambiguous {
+            name: name.to_owned(),
+            ids: several.iter().map(|(id, _)| *id).collect(),
+        }),
     }
-    Err(unknown(name))
+}
+
+/// The species one of whose plain names passes `test`.
+fn called(test: impl Fn(&str) -> bool) -> Vec<(&'static str, &'static str)> {
+    let passes = |(id, text): &&(&str, &str)| names_of(id, text).iter().any(|n| test(n));
+    LIBRARY.iter().filter(passes).copied().collect()
 }
 
 /// All names of a built-in species, plain.
