@@ -11,6 +11,7 @@ mod ladder;
 mod march;
 mod medulla;
 mod mesh;
+mod optics;
 mod packing;
 mod pattern;
 mod scales;
@@ -22,40 +23,16 @@ mod tests;
 
 pub use error::FiberError;
 pub use mesh::MeshPart;
+pub use optics::{Medium, Optics, Part, Region};
 
-use crate::species::{CuticlePattern, MedullaKind, Structure};
+use crate::species::{CuticlePattern, Structure};
 use glam::DVec3;
 use medulla::{Medulla, Rays};
+use optics::OpticalParts;
 use pattern::Pattern;
 use scales::Scales;
 use section::{Section, UnitRay};
 use surface::{Inward, OuterHit, OuterState, Surface};
-
-/// What fills the space between boundaries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Region {
-    /// Around the fiber: air, or what it is mounted in.
-    Outside,
-    /// Pigmented keratin: cuticle, cortex, and the medulla's walls between its voids.
-    Cortex,
-    /// A medulla without voids: a homogeneous scattering medium with the cortex's index.
-    Medulla,
-    /// A void of the medulla.
-    Void,
-}
-
-/// Optical properties of a region.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Medium {
-    /// Refractive index.
-    pub ior: f64,
-    /// Pigment relative to the cortex: scales the absorbing path length.
-    pub pigment: f64,
-    /// Scattering coefficient per micrometer, 0 for clear media.
-    pub scattering_per_um: f64,
-    /// Henyey-Greenstein asymmetry of the scattering.
-    pub asymmetry: f64,
-}
 
 /// A boundary met by a ray.
 #[derive(Clone, Copy, Debug)]
@@ -69,8 +46,8 @@ pub struct Hit {
     pub pigment_um: f64,
     /// The region on the far side.
     pub to: Region,
-    /// GGX roughness (alpha) of the boundary, 0 smooth.
-    pub roughness: f64,
+    /// The part whose outside was hit: says what the boundary does to light.
+    pub part: Part,
     /// Opaque continuation state: which boundary element was hit, so that the next ray starts on it
     /// without finding it again.
     pub state: HitState,
@@ -98,10 +75,7 @@ pub struct Fiber {
     surface: Surface,
     medulla: Medulla,
     period_um: f64,
-    /// Indexed by region.
-    media: [Medium; 4],
-    /// Index of the second region over that of the first.
-    eta: [[f64; 4]; 4],
+    optics: OpticalParts,
 }
 
 impl Fiber {
@@ -133,16 +107,13 @@ impl Fiber {
             ),
         };
         let medulla = Medulla::new(structure, &section, surface.rho_min(), period_um, seed)?;
-        let media = media(structure);
-        let eta = indices_between(&media);
         Ok(Self {
             structure: structure.clone(),
             section,
             surface,
             medulla,
             period_um,
-            media,
-            eta,
+            optics: OpticalParts::new(structure),
         })
     }
 
@@ -151,8 +122,7 @@ impl Fiber {
     /// * `ior`: refractive index of the medium, 1 or more.
     #[must_use]
     pub fn mounted_in(mut self, ior: f64) -> Self {
-        self.media[Region::Outside as usize].ior = ior;
-        self.eta = indices_between(&self.media);
+        self.optics.mount(ior);
         self
     }
 
@@ -196,13 +166,19 @@ impl Fiber {
     /// Properties of a region.
     #[inline]
     pub fn medium(&self, region: Region) -> &Medium {
-        &self.media[region as usize]
+        &self.optics.media[region as usize]
+    }
+
+    /// What the boundary of a part does to light.
+    #[inline]
+    pub fn optics(&self, part: Part) -> &Optics {
+        &self.optics.boundaries[part as usize]
     }
 
     /// Refractive index of `to` over that of `from`; 1 exactly where they are the same.
     #[inline]
     pub fn eta(&self, from: Region, to: Region) -> f64 {
-        self.eta[from as usize][to as usize]
+        self.optics.eta[from as usize][to as usize]
     }
 
     /// The region that holds a point, found from the shapes alone, without any ray.
@@ -263,6 +239,8 @@ impl Fiber {
                     Inward::Lost => return None,
                 }
             }
+            // Only meshes have a cuticle of its own.
+            Region::Cuticle => return None,
             Region::Medulla => self.outline_from_inside(&rays, element)?,
             Region::Void => {
                 let void = match element {
@@ -273,12 +251,30 @@ impl Fiber {
                 self.void_hit(&rays, t, index, Region::Cortex)
             }
         };
-        hit.pigment_um = match region {
-            Region::Outside | Region::Void => 0.0,
-            Region::Medulla => hit.t * self.structure.medulla.pigment,
-            Region::Cortex => hit.t + self.medulla.extra_pigment(&rays.unit, hit.t),
-        };
+        hit.pigment_um = self.pigment_on(&rays, region, hit.t);
         Some(hit)
+    }
+
+    /// The way of a ray that ends within `region`, at a scattering, times the pigment along it,
+    /// relative to the cortex, micrometers. See [`Hit::pigment_um`].
+    ///
+    /// * `t`: length of the way, micrometers, no longer than to the next boundary.
+    pub fn pigment_um(&self, origin: DVec3, dir: DVec3, region: Region, t: f64) -> f64 {
+        let rays = Rays {
+            origin,
+            dir,
+            unit: self.section.unit_ray(origin, dir),
+        };
+        self.pigment_on(&rays, region, t)
+    }
+
+    #[inline]
+    fn pigment_on(&self, rays: &Rays, region: Region, t: f64) -> f64 {
+        match region {
+            Region::Outside | Region::Cuticle | Region::Void => 0.0,
+            Region::Medulla => t * self.structure.medulla.pigment,
+            Region::Cortex => t + self.medulla.extra_pigment(&rays.unit, t),
+        }
     }
 
     /// Where a ray outside enters the fiber.
@@ -331,70 +327,43 @@ impl Fiber {
     }
 
     fn outer_hit(&self, rays: &Rays, hit: OuterHit, to: Region) -> Hit {
-        let cuticle = &self.structure.cuticle;
-        let roughness = match hit.state {
-            OuterState::Riser { .. } => cuticle.riser_roughness,
-            OuterState::Smooth | OuterState::Face { .. } => cuticle.roughness,
+        let part = match hit.state {
+            OuterState::Riser { .. } => Part::Riser,
+            OuterState::Smooth | OuterState::Face { .. } => Part::Scale,
         };
-        Hit {
-            roughness,
-            ..self.hit(rays, hit.t, hit.gradient, to, Element::Outer(hit.state))
-        }
+        let element = Element::Outer(hit.state);
+        self.hit(rays, hit.t, hit.gradient, to, part, element)
     }
 
     fn outline_hit(&self, rays: &Rays, t: f64, to: Region) -> Hit {
         let p = rays.unit.at(t);
-        self.hit(rays, t, DVec3::new(p.x, p.y, 0.0), to, Element::Outline)
+        let gradient = DVec3::new(p.x, p.y, 0.0);
+        self.hit(rays, t, gradient, to, Part::Medulla, Element::Outline)
     }
 
     fn void_hit(&self, rays: &Rays, t: f64, index: u32, to: Region) -> Hit {
         let point = rays.origin + t * rays.dir;
         let gradient = self.medulla.void_gradient(&self.section, point, index);
-        self.hit(rays, t, gradient, to, Element::Void(index))
+        self.hit(rays, t, gradient, to, Part::Void, Element::Void(index))
     }
 
-    /// A smooth boundary; `gradient` is its normal in the unit-circle frame, of any length and sign.
-    fn hit(&self, rays: &Rays, t: f64, gradient: DVec3, to: Region, element: Element) -> Hit {
+    /// `gradient`: normal of the boundary in the unit-circle frame, of any length and sign.
+    fn hit(
+        &self,
+        rays: &Rays,
+        t: f64,
+        gradient: DVec3,
+        to: Region,
+        part: Part,
+        element: Element,
+    ) -> Hit {
         Hit {
             t,
             pigment_um: t,
             normal: self.section.normal_against(gradient, rays.dir),
             to,
-            roughness: 0.0,
+            part,
             state: HitState { element },
         }
     }
-}
-
-/// Index of the second region over that of the first.
-fn indices_between(media: &[Medium; 4]) -> [[f64; 4]; 4] {
-    media.map(|near| media.map(|far| far.ior / near.ior))
-}
-
-/// The media of the regions, in their order.
-fn media(structure: &Structure) -> [Medium; 4] {
-    let medulla = &structure.medulla;
-    let clear = |ior, pigment| Medium {
-        ior,
-        pigment,
-        scattering_per_um: 0.0,
-        asymmetry: 0.0,
-    };
-    let (scattering_per_um, asymmetry) = match medulla.kind {
-        MedullaKind::Medium {
-            scattering_per_um,
-            asymmetry,
-        } => (scattering_per_um, asymmetry),
-        _ => (0.0, 0.0),
-    };
-    [
-        clear(1.0, 0.0),
-        clear(structure.ior, 1.0),
-        Medium {
-            scattering_per_um,
-            asymmetry,
-            ..clear(structure.ior, medulla.pigment)
-        },
-        clear(medulla.void_ior, 0.0),
-    ]
 }

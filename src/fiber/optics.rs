@@ -5,7 +5,7 @@ use crate::species::{Boundary, Filling, MedullaKind, Rgb, Structure};
 /// What fills the space between boundaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Region {
-    /// Air around the fiber.
+    /// Around the fiber: air, or what it is mounted in.
     Outside,
     /// A layer between the outer surface and the cortex; only meshes have one.
     Cuticle,
@@ -108,10 +108,20 @@ impl OpticalParts {
         let media = media(structure);
         Self {
             media,
-            eta: media.map(|near| media.map(|far| far.ior / near.ior)),
+            eta: indices_between(&media),
             boundaries: boundaries(structure),
         }
     }
+
+    /// Another medium than air around the fiber.
+    pub(super) fn mount(&mut self, ior: f64) {
+        self.media[Region::Outside as usize].ior = ior;
+        self.eta = indices_between(&self.media);
+    }
+}
+
+fn indices_between(media: &[Medium; Region::COUNT]) -> [[f64; Region::COUNT]; Region::COUNT] {
+    media.map(|near| media.map(|far| far.ior / near.ior))
 }
 
 fn media(structure: &Structure) -> [Medium; Region::COUNT] {
@@ -165,9 +175,13 @@ fn boundaries(structure: &Structure) -> [Optics; Part::COUNT] {
     let scales = &materials.cuticle;
     // A coat of the scales covers their risers.
     let riser = materials.riser.unwrap_or(scales.boundary);
-    let of = |part: &crate::species::Material| optics(&part.boundary, part.roughness.unwrap_or(0.0));
+    let of =
+        |part: &crate::species::Material| optics(&part.boundary, part.roughness.unwrap_or(0.0));
     [
-        optics(&scales.boundary, scales.roughness.unwrap_or(cuticle.roughness)),
+        optics(
+            &scales.boundary,
+            scales.roughness.unwrap_or(cuticle.roughness),
+        ),
         optics(&riser, cuticle.riser_roughness),
         of(&materials.cortex),
         of(&materials.medulla),
