@@ -7,7 +7,7 @@ use super::{Console, Failure};
 use crate::blame::Blame;
 use crate::fiber::{Fiber, FiberError};
 use crate::io::check_writable;
-use crate::micrograph::{self, MicrographError, Microscope, Shot, Subject, View, tilt_deg};
+use crate::micrograph::{self, Legend, MicrographError, Microscope, Shot, Subject, View, tilt_deg};
 use crate::species::{self, HairClass, Species, Station};
 use serde_json::json;
 use std::io::Write as _;
@@ -136,7 +136,11 @@ fn view(args: &Args) -> (View, Shot) {
     let shot = Shot {
         size: args.res,
         samples: args.spp.unwrap_or(samples),
-        caption: !args.no_caption,
+        legend: if args.no_caption {
+            Legend::Bar
+        } else {
+            Legend::Caption
+        },
     };
     (view, shot)
 }

@@ -1,7 +1,7 @@
 //! The frame of a micrograph: how large the fiber is in it, the caption and the scale bar.
 
 use super::caption::Facts;
-use super::{Shot, Subject, View};
+use super::{Legend, Shot, Subject, View};
 use crate::fiber::Fiber;
 use crate::image::{Canvas, GLYPH_HEIGHT, text_width};
 use crate::species::CuticlePattern;
@@ -56,7 +56,7 @@ pub(super) fn draw(
     // A small picture keeps three quarters of its height.
     let room = (0.25 * height as f32 - 2.0 * pad) / line - 1.0;
     rows.truncate(room.max(0.0) as usize);
-    let strip = if shot.caption {
+    let strip = if shot.legend == Legend::Caption {
         (line * (rows.len() + 1) as f32 + 2.0 * pad) as usize
     } else {
         0
@@ -65,9 +65,11 @@ pub(super) fn draw(
     let top = (height - strip) as f32;
     let mut canvas = Canvas::new(width, height, STRIP);
     canvas.paste(&drawn.canvas, 0, 0);
-    if !shot.caption {
-        let right = Vec2::new(width as f32 - pad, top - pad - line);
-        bar(&mut canvas, drawn.um_per_pixel, right, 0.3, text, true);
+    if shot.legend != Legend::Caption {
+        if shot.legend == Legend::Bar {
+            let right = Vec2::new(width as f32 - pad, top - pad - line);
+            bar(&mut canvas, drawn.um_per_pixel, right, 0.3, text, true);
+        }
         return Some(canvas);
     }
     let right = Vec2::new(width as f32 - pad, top + pad);

@@ -80,8 +80,19 @@ pub struct Shot {
     pub size: (usize, usize),
     /// Samples a pixel, 1..=65536; more is smoother.
     pub samples: u32,
-    /// Whether a caption with a scale bar stands below; without, only the bar is drawn.
-    pub caption: bool,
+    /// What is written.
+    pub legend: Legend,
+}
+
+/// What is written into a picture; a plate always has its labels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Legend {
+    /// A caption with a scale bar below.
+    Caption,
+    /// A scale bar in the corner.
+    Bar,
+    /// Nothing.
+    None,
 }
 
 impl Shot {
