@@ -136,6 +136,7 @@ impl Stage<'_> {
                 let density = fiber.medium(Region::Medulla).pigment;
                 MEDIUM * pigment::keratin(self.absorption, SLICE_UM * density)
             }
+            What::Cut(Region::Cuticle) => pigment::keratin(self.absorption, 0.0),
             What::Cut(_) => {
                 let density = pigment::density(fiber, seen.point);
                 pigment::keratin(self.absorption, SLICE_UM * density)

@@ -106,14 +106,14 @@ pub(super) fn light(
     let (x, z) = (sine * u, sine * v);
     let dir = DVec3::new(x, (1.0 - x * x - z * z).sqrt(), z);
     let origin = focus - (4.0 * fiber.bounding_radius_um() + microscope.focus_um.abs()) * dir;
-    let (leaving, path_um) = match fiber.next_hit(origin, dir, Region::Outside, None) {
-        None => (dir, 0.0),
+    let (leaving, path_um, share) = match fiber.next_hit(origin, dir, Region::Outside, None) {
+        None => (dir, 0.0, 1.0),
         Some(hit) => {
             let at = origin + hit.t * dir;
             let flight = follow(fiber, at, dir, hit, &mut sample.rng, MAX_EVENTS);
             match flight.end {
-                End::Escaped(leaving) => (leaving, flight.path_um),
-                End::Truncated | End::Lost | End::Missed => return DVec3::ZERO,
+                End::Escaped(leaving) => (leaving, flight.path_um, flight.share),
+                _ => return DVec3::ZERO,
             }
         }
     };
@@ -121,5 +121,5 @@ pub(super) fn light(
     if leaving.y <= 0.0 || microscope.mount * sine > microscope.condenser * RIM {
         return DVec3::ZERO;
     }
-    (-path_um * absorption).exp()
+    share * (-path_um * absorption).exp()
 }

@@ -36,25 +36,14 @@ pub fn absorption_at(class: &HairClass, station: &Station) -> [f64; 3] {
     std::array::from_fn(|c| here[c] + neighbor.1 * (there[c] - here[c]))
 }
 
-/// Step across which the pigment is differenced, micrometers: finer than any streak.
+/// Way over which density is measured, micrometers: finer than any streak.
 const STEP_UM: f64 = 0.2;
 
-/// Density of the pigment at a point of the cortex, relative to the cortex as a whole: what two
-/// rays to the same boundary differ by.
+/// Density of the pigment at a point of the cortex, relative to the cortex as a whole.
 pub(super) fn density(fiber: &Fiber, point: DVec3) -> f64 {
     let dir = DVec3::new(point.x, point.y, 0.0).normalize_or(DVec3::X);
-    let gathered = |p: DVec3| {
-        let hit = fiber.next_hit(p, dir, Region::Cortex, None)?;
-        Some((hit.t, hit.pigment_um))
-    };
-    let (near, far) = (point - 0.5 * STEP_UM * dir, point + 0.5 * STEP_UM * dir);
-    match (gathered(near), gathered(far)) {
-        (Some(a), Some(b)) if (a.0 - b.0 - STEP_UM).abs() < 1e-3 * STEP_UM => {
-            ((a.1 - b.1) / STEP_UM).max(0.0)
-        }
-        // At a boundary: the mean of the way to it.
-        _ => gathered(point).map_or(1.0, |(t, pigment)| if t > 0.0 { pigment / t } else { 1.0 }),
-    }
+    let from = point - 0.5 * STEP_UM * dir;
+    fiber.pigment_um(from, dir, Region::Cortex, STEP_UM) / STEP_UM
 }
 
 /// Keratin without pigment in white light, linear: faintly yellow.

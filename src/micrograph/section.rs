@@ -50,6 +50,7 @@ pub(super) fn draw(subject: &Subject, area: (usize, usize), raster: &Raster) -> 
                 let density = fiber.medium(Region::Medulla).pigment;
                 MEDIUM * pigment::keratin(absorption, SLICE_UM * density)
             }
+            Region::Cuticle => pigment::keratin(absorption, 0.0),
             Region::Cortex => {
                 let density = pigment::density(fiber, point);
                 pigment::keratin(absorption, SLICE_UM * density)

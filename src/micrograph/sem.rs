@@ -94,10 +94,11 @@ fn edge_nearness(fiber: &Fiber, seen: &Seen, u: f64) -> f64 {
     let (sin, cos) = (TAU * u).sin_cos();
     let along = cos * x + sin * y;
     let below = seen.point - 0.1 * EDGE_UM * seen.normal;
-    if fiber.region_at(below) != Region::Cortex {
+    let region = fiber.region_at(below);
+    if region == Region::Outside {
         return 1.0;
     }
-    match fiber.next_hit(below, along, Region::Cortex, None) {
+    match fiber.next_hit(below, along, region, None) {
         Some(hit) if hit.to == Region::Outside => (1.0 - hit.t / EDGE_UM).max(0.0),
         _ => 0.0,
     }

@@ -111,7 +111,7 @@ impl<'a> Specimen<'a> {
                 let (t, normal) = self.end_of_gaps(p, dir)?;
                 p += t * dir;
                 let behind = self.fiber.region_at(p + BEHIND * dir);
-                if matches!(behind, Region::Cortex | Region::Medulla) {
+                if !matches!(behind, Region::Outside | Region::Void) {
                     return Some(Seen {
                         point: p,
                         normal,
