@@ -11,32 +11,19 @@ macro_rules! library {
 #[rustfmt::skip]
 pub const LIBRARY: &[(&str, &str)] = library![
     // Cats: Felidae
-    "cat"
-    "lynx"
-    "bobcat"
 
     // Dogs and foxes: Canidae
     "red-fox"
-    "arctic-fox"
-    "wolf"
-    "dog"
 
     // Raccoons: Procyonidae
-    "raccoon"
 
-    // Weasels and otters: Mustelidae
+    // Weasels: Mustelidae
     "mink"
-    "river-otter"
-    "sea-otter"
-    "badger"
 
     // Bears: Ursidae
-    "brown-bear"
     "polar-bear"
 
     // Seals: Phocidae, Otariidae
-    "harbor-seal"
-    "fur-seal"
 
     // Rabbits and hares: Leporidae
 
