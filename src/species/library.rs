@@ -26,21 +26,43 @@ pub const LIBRARY: &[(&str, &str)] = library![
     // Seals: Phocidae, Otariidae
 
     // Rabbits and hares: Leporidae
+    "rabbit"
+    "hare"
 
     // Rodents: Muridae, Sciuridae, Chinchillidae, Castoridae
+    "mouse"
+    "rat"
+    "squirrel"
+    "chinchilla"
+    "beaver"
 
     // Deer: Cervidae
+    "deer"
+    "roe-deer"
+    "caribou"
+    "moose"
 
     // Cattle, sheep and goats: Bovidae
+    "cow"
+    "sheep"
+    "cashmere-goat"
+    "mohair"
 
     // Camels: Camelidae
+    "alpaca"
 
     // Horses: Equidae
+    "horse"
 
     // Bats: Vespertilionidae
+    "bat"
 
     // People: Hominidae
     "human"
+
+    // Made-up furs
+    "ember-lynx"
+    "glass-moth"
 
     // No animals
     "glass-cylinder"
