@@ -24,6 +24,7 @@ pub mod groom;
 pub mod image;
 pub mod io;
 pub mod math;
+pub mod micrograph;
 pub mod progress;
 pub mod render;
 pub mod sampling;

@@ -1,4 +1,4 @@
-//! Rough dielectric boundaries by a random walk on a GGX microsurface.
+//! Rough boundaries by a random walk on a GGX microsurface.
 //!
 //! The walk of Heitz, Hanika, d'Eon and Dachsbacher 2016 ("Multiple-scattering microfacet BSDFs with
 //! the Smith model"): no energy is lost at any roughness, and the result is reciprocal, which a
@@ -29,9 +29,12 @@ pub(super) struct Ratio {
 }
 
 impl Ratio {
-    /// The boundary seen from the other side.
+    /// The boundary seen from the side `n` points to (`above`) or from the other one.
     #[inline]
-    fn turned(self) -> Self {
+    pub(super) fn on_side(self, above: bool) -> Self {
+        if above {
+            return self;
+        }
         Self {
             eta: self.inverse,
             inverse: self.eta,
@@ -58,9 +61,25 @@ pub(super) fn smooth(dir: DVec3, n: DVec3, ratio: Ratio, rng: &mut Rng) -> Turn 
     }
 }
 
-/// Rough boundary with GGX roughness `alpha` > 0. `None` if the walk does not end (not seen; the
-/// caller counts it as lost).
+/// Rough dielectric boundary with GGX roughness `alpha` > 0. See [`walk`].
 pub(super) fn rough(dir: DVec3, n: DVec3, ratio: Ratio, alpha: f64, rng: &mut Rng) -> Option<Turn> {
+    walk(dir, n, alpha, rng, |dir, m, above, rng| {
+        smooth(dir, m, ratio.on_side(above), rng)
+    })
+}
+
+/// Walks on a microsurface of roughness `alpha` > 0 until it is left. `None` if the walk does not
+/// end (not seen; the caller counts it as lost).
+///
+/// * `facet`: what happens at one facet, from the direction of travel, the facet's unit normal
+///   against it and whether the ray is above the surface.
+pub(super) fn walk(
+    dir: DVec3,
+    n: DVec3,
+    alpha: f64,
+    rng: &mut Rng,
+    mut facet: impl FnMut(DVec3, DVec3, bool, &mut Rng) -> Turn,
+) -> Option<Turn> {
     let (tangent, bitangent) = n.any_orthonormal_pair();
     let mut d = DVec3::new(dir.dot(tangent), dir.dot(bitangent), dir.dot(n));
     let mut above = true;
@@ -77,9 +96,8 @@ pub(super) fn rough(dir: DVec3, n: DVec3, ratio: Ratio, alpha: f64, rng: &mut Rn
         };
         depth = met;
         let side = if above { 1.0 } else { -1.0 };
-        let ratio = if above { ratio } else { ratio.turned() };
         let m = side * visible_normal(-side * d, alpha, rng);
-        let turn = smooth(d, m, ratio, rng);
+        let turn = facet(d, m, above, rng);
         d = turn.dir;
         if turn.transmitted {
             above = !above;

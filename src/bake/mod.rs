@@ -5,6 +5,7 @@
 //! follow the same paths, so the direction that a photon comes from is the one the renderer will ask
 //! about and the texels are the directions it will sample.
 
+mod boundary;
 mod cache;
 mod content;
 mod microfacet;
@@ -343,7 +344,7 @@ impl Shot<'_> {
         };
         let flight = fly(self.fiber, &photon, self.settings.max_events);
         let path = flight.path_um / (0.5 * self.fiber.structure().diameter_um);
-        let levels = &self.settings.levels;
+        let (share, levels) = (flight.share, &self.settings.levels);
         match flight.end {
             End::Escaped(w) => {
                 let w = match self.settings.mode {
@@ -353,10 +354,11 @@ impl Shot<'_> {
                         crate::math::frame::shift_inclination(w, sin, cos)
                     }
                 };
-                tally.escape(self.cube.texel(w), path, levels);
+                tally.escape(self.cube.texel(w), share, path, levels);
             }
-            End::Truncated => tally.truncate(path, levels),
-            End::Lost => tally.lose(path, levels),
+            End::Absorbed => tally.absorb(levels),
+            End::Truncated => tally.truncate(share, path, levels),
+            End::Lost => tally.lose(share, path, levels),
             End::Missed => {}
         }
     }

@@ -1,7 +1,7 @@
 //! One photon through one fiber: a function of (fiber, photon) and nothing else.
 
-use super::microfacet;
-use crate::fiber::{Fiber, Hit, Region};
+use super::{boundary, microfacet};
+use crate::fiber::{Fiber, Hit, Medium, Optics, Region};
 use crate::sampling::Rng;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
@@ -22,6 +22,8 @@ pub struct Photon {
 pub enum End {
     /// Left along this unit direction, in the frame where the query direction has azimuth 0.
     Escaped(DVec3),
+    /// Nothing was left of it, in a medium or at an opaque boundary.
+    Absorbed,
     /// Used up its events.
     Truncated,
     /// Found no boundary where there must be one.
@@ -37,6 +39,9 @@ pub struct Flight {
     pub theta: f64,
     /// Length of path through pigment, weighted by its density, micrometers.
     pub path_um: f64,
+    /// Share of the light that opaque boundaries and absorbing media have left, pigment aside: 1 in
+    /// plain keratin.
+    pub share: f64,
     /// Reflections, refractions and scatterings.
     pub events: u32,
     /// How it ended.
@@ -60,6 +65,7 @@ pub fn fly(fiber: &Fiber, photon: &Photon, max_events: u32) -> Flight {
     let flight = Flight {
         theta: sin.atan2(cos),
         path_um: 0.0,
+        share: 1.0,
         events: 0,
         end: End::Missed,
     };
@@ -111,6 +117,7 @@ pub fn follow(
     let mut flight = Flight {
         theta: -dir.z.clamp(-1.0, 1.0).asin(),
         path_um: 0.0,
+        share: 1.0,
         events: 0,
         end: End::Missed,
     };
@@ -123,14 +130,24 @@ pub fn follow(
             inverse: fiber.eta(hit.to, region),
         };
         let mut from = Some(hit.state);
-        if ratio.eta == 1.0 {
+        let optics = fiber.optics(hit.part);
+        if ratio.eta == 1.0 && matches!(optics, Optics::Dielectric { .. }) {
             region = hit.to;
         } else {
             flight.events += 1;
-            let turned = if hit.roughness > 0.0 {
-                microfacet::rough(dir, hit.normal, ratio, hit.roughness, rng)
-            } else {
-                Some(microfacet::smooth(dir, hit.normal, ratio, rng))
+            let turned = match optics {
+                Optics::Dielectric { roughness } if *roughness > 0.0 => {
+                    microfacet::rough(dir, hit.normal, ratio, *roughness, rng)
+                }
+                Optics::Dielectric { .. } => Some(microfacet::smooth(dir, hit.normal, ratio, rng)),
+                _ => {
+                    let near = fiber.medium(region).ior;
+                    let met = boundary::meet(optics, dir, hit.normal, ratio, near, rng);
+                    met.map(|(turned, share)| {
+                        flight.share *= share;
+                        turned
+                    })
+                }
             };
             let Some(turned) = turned else {
                 flight.end = End::Lost;
@@ -140,6 +157,10 @@ pub fn follow(
             if turned.transmitted {
                 region = hit.to;
             }
+        }
+        if flight.share < FAINT && is_taken(&mut flight.share, rng) {
+            flight.end = End::Absorbed;
+            return flight;
         }
         // To the next boundary, with scatterings on the way.
         let medium = fiber.medium(region);
@@ -165,7 +186,8 @@ pub fn follow(
                 let free = -(1.0 - rng.uniform()).ln() / medium.scattering_per_um;
                 if free < next.t {
                     flight.events += 1;
-                    flight.path_um += free * medium.pigment;
+                    flight.path_um += fiber.pigment_um(p, dir, region, free);
+                    flight.share *= transmitted(medium, free);
                     p += free * dir;
                     dir = henyey_greenstein(dir, medium.asymmetry, rng);
                     from = None;
@@ -173,9 +195,32 @@ pub fn follow(
                 }
             }
             flight.path_um += next.pigment_um;
+            flight.share *= transmitted(medium, next.t);
             break next;
         };
         p += hit.t * dir;
+    }
+}
+
+/// Photons with less than this share live on by chance. Smaller: dark cavities are walked through for
+/// ever; larger: the noise of roulette shows in dim lobes.
+const FAINT: f64 = 1.0 / 64.0;
+
+/// Roulette: whether a faint photon ends here; if not, it stands for those that did.
+#[cold]
+fn is_taken(share: &mut f64, rng: &mut Rng) -> bool {
+    let survives = rng.uniform() * FAINT < *share;
+    *share = if survives { FAINT } else { 0.0 };
+    !survives
+}
+
+/// Share that a medium lets through, pigment and scattering aside.
+#[inline]
+fn transmitted(medium: &Medium, way_um: f64) -> f64 {
+    if medium.absorption_per_um > 0.0 {
+        (-medium.absorption_per_um * way_um).exp()
+    } else {
+        1.0
     }
 }
 

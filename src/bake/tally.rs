@@ -40,9 +40,11 @@ impl Tally {
         self.photons == 0
     }
 
-    /// A photon left through `texel` after an optical path of `path` radii of pigment.
-    pub(super) fn escape(&mut self, texel: usize, path: f64, levels: &[f64]) {
-        let weights = self.arrive(path, levels);
+    /// A photon left through `texel`.
+    ///
+    /// * `share`: what is left of it, pigment aside; `path`: its way through pigment in radii.
+    pub(super) fn escape(&mut self, texel: usize, share: f64, path: f64, levels: &[f64]) {
+        let weights = self.arrive(share, path, levels);
         let run = &mut self.texels[texel * self.levels..(texel + 1) * self.levels];
         for (sum, weight) in run.iter_mut().zip(weights) {
             *sum += weight;
@@ -50,21 +52,26 @@ impl Tally {
     }
 
     /// A photon was given up.
-    pub(super) fn truncate(&mut self, path: f64, levels: &[f64]) {
-        let weights = self.arrive(path, levels);
+    pub(super) fn truncate(&mut self, share: f64, path: f64, levels: &[f64]) {
+        let weights = self.arrive(share, path, levels);
         add(&mut self.truncated, &weights);
     }
 
     /// A photon found no boundary.
-    pub(super) fn lose(&mut self, path: f64, levels: &[f64]) {
-        let weights = self.arrive(path, levels);
+    pub(super) fn lose(&mut self, share: f64, path: f64, levels: &[f64]) {
+        let weights = self.arrive(share, path, levels);
         add(&mut self.lost, &weights);
     }
 
-    /// Books a photon and what pigment took of it; returns what is left at each level.
-    fn arrive(&mut self, path: f64, levels: &[f64]) -> [u64; MAX_LEVELS] {
+    /// Nothing was left of a photon.
+    pub(super) fn absorb(&mut self, levels: &[f64]) {
+        self.arrive(0.0, 0.0, levels);
+    }
+
+    /// Books a photon and what was taken of it on its way; returns what is left at each level.
+    fn arrive(&mut self, share: f64, path: f64, levels: &[f64]) -> [u64; MAX_LEVELS] {
         self.photons += 1;
-        let weights = weights(path, levels);
+        let weights = weights(share, path, levels);
         for (absorbed, weight) in self.absorbed.iter_mut().zip(&weights).take(levels.len()) {
             *absorbed += PHOTON - weight;
         }
@@ -126,7 +133,8 @@ impl Tally {
         flux
     }
 
-    /// Relative standard error of the clear level: photons there count 1 each.
+    /// Relative standard error of the clear level: photons there count 1 each. An upper bound where
+    /// they count less because something opaque was on their way.
     pub(super) fn error(&self) -> Vec<f32> {
         let photons = |v: &u64| *v as f64 / PHOTON as f64;
         self.texels
@@ -143,16 +151,17 @@ fn add(a: &mut [u64; MAX_LEVELS], b: &[u64; MAX_LEVELS]) {
     }
 }
 
-/// The fixed-point weight `exp(-level * path)` of every level. Levels from the second on are a
+/// The fixed-point weight `share * exp(-level * path)` of every level. Levels from the second on are a
 /// geometric series of ratio 2, so each weight is the square of the one before.
 #[inline]
-fn weights(path: f64, levels: &[f64]) -> [u64; MAX_LEVELS] {
+fn weights(share: f64, path: f64, levels: &[f64]) -> [u64; MAX_LEVELS] {
     let mut weights = [0; MAX_LEVELS];
-    weights[0] = PHOTON;
-    let mut share = levels.get(1).map_or(0.0, |first| (-first * path).exp());
+    let clear = share * PHOTON as f64;
+    weights[0] = clear as u64;
+    let mut left = levels.get(1).map_or(0.0, |first| (-first * path).exp());
     for weight in weights.iter_mut().take(levels.len()).skip(1) {
-        *weight = (share * PHOTON as f64) as u64;
-        share *= share;
+        *weight = (left * clear) as u64;
+        left *= left;
     }
     weights
 }
@@ -169,10 +178,12 @@ mod tests {
         let mut tally = Tally::new(cube.texels(), levels.len());
         for i in 0..1000u32 {
             let path = f64::from(i % 37) * 0.31;
+            let share = 1.0 / f64::from(1 + i % 7);
             match i % 10 {
-                0 => tally.truncate(path, &levels),
-                1 => tally.lose(path, &levels),
-                _ => tally.escape(i as usize % cube.texels(), path, &levels),
+                0 => tally.truncate(share, path, &levels),
+                1 => tally.lose(share, path, &levels),
+                2 => tally.absorb(&levels),
+                _ => tally.escape(i as usize % cube.texels(), share, path, &levels),
             }
         }
         tally.fold(&cube);
@@ -180,9 +191,9 @@ mod tests {
             assert_eq!(l.emitted, l.escaped + l.absorbed + l.truncated + l.lost);
             assert!(l.truncated > 0 && l.lost > 0);
         }
-        let weights = weights(0.7, &levels);
+        let weights = weights(0.3, 0.7, &levels);
         for (level, weight) in levels.iter().zip(weights) {
-            let exact = (-level * 0.7).exp();
+            let exact = 0.3 * (-level * 0.7).exp();
             assert!((weight as f64 / PHOTON as f64 - exact).abs() < 1e-9);
         }
     }

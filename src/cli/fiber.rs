@@ -1,16 +1,14 @@
 //! `vair fiber`: a fiber as a microscopist would draw it, or as a mesh.
 
 mod mesh;
-mod plate;
-mod specimen;
 
 use super::bake::{find_class, find_station};
 use super::{Console, Failure};
 use crate::blame::Blame;
 use crate::fiber::{Fiber, FiberError};
 use crate::io::check_writable;
-use crate::species::{self, CuticlePattern, HairClass, Species, Station, Structure};
-use plate::Labels;
+use crate::micrograph::{self, Legend, MicrographError, Microscope, Shot, Subject, View, tilt_deg};
+use crate::species::{self, HairClass, Species, Station};
 use serde_json::json;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -19,7 +17,9 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   vair fiber red-fox -o fox.png
-  vair fiber mink --class under -o mink-under.png --size 1920x1080
+  vair fiber mink --class under --view sem --res 1920x1080 -o mink-under.png
+  vair fiber red-fox --view light --mount 1.0 -o dry.png
+  vair fiber red-fox --view light --set guard.structure.medulla.void_ior=1.33 -o flooded.png
   vair fiber polar-bear --station 0.2 -o bear.obj --json
   vair fiber human --set guard.stations.0.cuticle.pitch_um=12 -o human.ply")]
 pub(super) struct Args {
@@ -35,9 +35,38 @@ pub(super) struct Args {
     /// Override a field of the species. May repeat.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Size of the picture, pixels.
-    #[arg(long, value_parser = parse_size, default_value = "1280x720")]
-    size: (usize, usize),
+    /// What pictures show.
+    #[arg(long, value_enum, default_value = "plate")]
+    view: ViewArg,
+    /// Width and height of the picture, pixels.
+    #[arg(long, alias = "size", value_parser = parse_size, default_value = "1280x720")]
+    res: (usize, usize),
+    /// Samples a pixel; more is smoother.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    spp: Option<u32>,
+    /// Electron microscope: tilt of the stage, degrees. Seen from straight above, free edges vanish.
+    #[arg(long, value_name = "DEGREES", default_value_t = 17.0)]
+    tilt: f64,
+    /// Light microscope: refractive index of the medium around the fiber; 1 is dry.
+    #[arg(long, value_name = "INDEX", default_value_t = Microscope::default().mount)]
+    mount: f64,
+    /// Light microscope: numerical aperture of objective and condenser.
+    #[arg(long, value_name = "NA", default_value_t = Microscope::default().objective)]
+    aperture: f64,
+    /// Light microscope: aperture of the condenser if it is another.
+    #[arg(long, value_name = "NA")]
+    condenser: Option<f64>,
+    /// Light microscope: plane in focus, micrometers above the middle of the fiber.
+    #[arg(
+        long,
+        value_name = "UM",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    focus: f64,
+    /// Leave the caption out; a scale bar stays.
+    #[arg(long)]
+    no_caption: bool,
     /// Seed of scales and voids.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -50,6 +79,26 @@ pub(super) struct Args {
     output: Vec<PathBuf>,
 }
 
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum ViewArg {
+    /// Outside, longitudinal cut and cross-section with labels.
+    Plate,
+    /// The scales under a scanning electron microscope.
+    Sem,
+    /// A transmitted-light micrograph, traced through the fiber in its mounting medium.
+    Light,
+    /// A thin section across the fiber.
+    Section,
+    /// A piece of the fiber with its front quarter taken out.
+    Cutaway,
+}
+
+impl From<MicrographError> for Failure {
+    fn from(error: MicrographError) -> Self {
+        Self::new(error.blame(), error)
+    }
+}
+
 impl From<FiberError> for Failure {
     fn from(error: FiberError) -> Self {
         Self::new(error.blame(), error)
@@ -58,15 +107,42 @@ impl From<FiberError> for Failure {
 
 /// `1280x720`.
 fn parse_size(text: &str) -> Result<(usize, usize), String> {
-    let refuse = || format!("`{text}` is not a size such as 1280x720, 320x180 to 8192x8192");
-    let (w, h) = text.split_once('x').ok_or_else(refuse)?;
-    let number = |s: &str| s.parse::<usize>().map_err(|_| refuse());
-    let (w, h) = (number(w)?, number(h)?);
-    if (320..=8192).contains(&w) && (180..=8192).contains(&h) {
-        Ok((w, h))
-    } else {
-        Err(refuse())
-    }
+    let refuse = || format!("`{text}` is not a size such as 1280x720");
+    let (w, h) = text.split_once(['x', 'X']).ok_or_else(refuse)?;
+    let number = |s: &str| s.trim().parse::<usize>().map_err(|_| refuse());
+    Ok((number(w)?, number(h)?))
+}
+
+/// The view asked for, and how it is taken.
+fn view(args: &Args) -> (View, Shot) {
+    let (view, samples) = match args.view {
+        ViewArg::Plate => (View::Plate, 25),
+        ViewArg::Sem => {
+            let tilt = args.tilt.to_radians();
+            (View::Sem { tilt }, 36)
+        }
+        ViewArg::Light => {
+            let microscope = Microscope {
+                mount: args.mount,
+                objective: args.aperture,
+                condenser: args.condenser.unwrap_or(args.aperture),
+                focus_um: args.focus,
+            };
+            (View::Light(microscope), 64)
+        }
+        ViewArg::Section => (View::Section, 16),
+        ViewArg::Cutaway => (View::Cutaway, 36),
+    };
+    let shot = Shot {
+        size: args.res,
+        samples: args.spp.unwrap_or(samples),
+        legend: if args.no_caption {
+            Legend::Bar
+        } else {
+            Legend::Caption
+        },
+    };
+    (view, shot)
 }
 
 /// Runs the command.
@@ -82,17 +158,20 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         format_of(path)?;
         check_writable(path)?;
     }
+    let (view, shot) = view(args);
+    micrograph::check(view, &shot)?;
     let fiber = Fiber::build(&station.structure, args.seed)?;
     for path in &args.output {
         match format_of(path)? {
             Format::Png => {
-                let labels = labels(&species, class, station, &fiber);
-                let cancel = console.cancel();
-                let picture = plate::draw(&fiber, &labels, args.size, console, cancel);
-                let Some(picture) = picture else {
-                    return Err(Failure::new(Blame::Interrupted, "stopped; nothing written"));
+                let subject = Subject {
+                    fiber: &fiber,
+                    species: &species,
+                    class,
+                    station,
                 };
-                picture.write_png(path)?;
+                let cancel = console.cancel();
+                micrograph::draw(view, &subject, &shot, console, cancel)?.write_png(path)?;
             }
             Format::Obj => mesh::write_obj(path, &fiber.mesh())?,
             Format::Ply => mesh::write_ply(path, &fiber.mesh())?,
@@ -127,56 +206,6 @@ fn format_of(path: &Path) -> Result<Format, Failure> {
             format!("{}: unknown kind of file", path.display()),
             "the name must end in .png, .obj or .ply",
         )),
-    }
-}
-
-/// Tilt of the scales, degrees.
-fn tilt_deg(structure: &Structure) -> f64 {
-    let cuticle = &structure.cuticle;
-    if cuticle.pattern == CuticlePattern::Smooth {
-        return 0.0;
-    }
-    (cuticle.height_um / cuticle.pitch_um).atan().to_degrees()
-}
-
-fn labels(species: &Species, class: &HairClass, station: &Station, fiber: &Fiber) -> Labels {
-    let s = &station.structure;
-    let c = &s.cuticle;
-    let mut facts = vec![format!(
-        "{} \u{b5}m thick, aspect {}",
-        s.diameter_um, s.aspect
-    )];
-    facts.push(if c.pattern == CuticlePattern::Smooth {
-        "cuticle: smooth".to_owned()
-    } else {
-        format!(
-            "cuticle: {}, {} round, pitch {} \u{b5}m, step {} \u{b5}m, tilt {:.1}\u{b0}",
-            c.pattern.name(),
-            c.around,
-            c.pitch_um,
-            c.height_um,
-            tilt_deg(s)
-        )
-    });
-    let air = fiber.air_fraction();
-    facts.push(match s.medulla.kind.name() {
-        "none" => "medulla: none".to_owned(),
-        name if air > 0.0 => format!(
-            "medulla: {name}, index {:.2}, {:.0} % air",
-            s.medulla.ratio,
-            100.0 * air
-        ),
-        name => format!("medulla: {name}, index {:.2}", s.medulla.ratio),
-    });
-    let latin = if species.latin.is_empty() {
-        String::new()
-    } else {
-        format!("  {}", species.latin)
-    };
-    Labels {
-        title: format!("{}{latin}", species.name),
-        subtitle: format!("{} hair at {:.2} of its length", class.name, station.at),
-        facts,
     }
 }
 

@@ -3,66 +3,36 @@
 //! Fiber frame: +Z is the tangent, root to tip; micrometers. The geometry repeats along z with
 //! [`Fiber::period_um`]; rays may start and end at any z.
 
-mod bodies;
-mod cortex;
 mod covering;
 mod crossing;
 mod error;
 mod froth;
-mod fusi;
-mod grid;
 mod ladder;
 mod march;
 mod medulla;
 mod mesh;
+mod optics;
 mod packing;
 mod pattern;
 mod scales;
 mod section;
 mod surface;
-mod voronoi;
 
 #[cfg(test)]
 mod tests;
 
 pub use error::FiberError;
 pub use mesh::MeshPart;
+pub use optics::{Medium, Optics, Part, Region};
 
 use crate::species::{CuticlePattern, Structure};
-use bodies::Bodies;
-use cortex::Pigment;
 use glam::DVec3;
 use medulla::{Medulla, Rays};
+use optics::OpticalParts;
 use pattern::Pattern;
 use scales::Scales;
 use section::{Section, UnitRay};
 use surface::{Inward, OuterHit, OuterState, Surface};
-
-/// What fills the space between boundaries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Region {
-    /// Around the fiber: air, or what it is mounted in.
-    Outside,
-    /// Pigmented keratin: cuticle, cortex, and the medulla's walls between its voids.
-    Cortex,
-    /// A medulla without voids: a homogeneous scattering medium with the cortex's index.
-    Medulla,
-    /// A void of the medulla.
-    Void,
-}
-
-/// Optical properties of a region.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Medium {
-    /// Refractive index.
-    pub ior: f64,
-    /// Pigment relative to the cortex: scales the absorbing path length.
-    pub pigment: f64,
-    /// Scattering coefficient per micrometer, 0 for clear media.
-    pub scattering_per_um: f64,
-    /// Henyey-Greenstein asymmetry of the scattering.
-    pub asymmetry: f64,
-}
 
 /// A boundary met by a ray.
 #[derive(Clone, Copy, Debug)]
@@ -76,8 +46,8 @@ pub struct Hit {
     pub pigment_um: f64,
     /// The region on the far side.
     pub to: Region,
-    /// GGX roughness (alpha) of the boundary, 0 smooth.
-    pub roughness: f64,
+    /// The part whose outside was hit: says what the boundary does to light.
+    pub part: Part,
     /// Opaque continuation state: which boundary element was hit, so that the next ray starts on it
     /// without finding it again.
     pub state: HitState,
@@ -95,8 +65,6 @@ enum Element {
     /// The outline of a medulla without voids.
     Outline,
     Void(u32),
-    /// A face of a cortical fusus.
-    Fusus(u32),
 }
 
 /// One period of a fiber.
@@ -106,13 +74,8 @@ pub struct Fiber {
     section: Section,
     surface: Surface,
     medulla: Medulla,
-    fusi: Option<Box<Bodies>>,
-    pigment: Pigment,
     period_um: f64,
-    /// Indexed by region.
-    media: [Medium; 4],
-    /// Index of the second region over that of the first.
-    eta: [[f64; 4]; 4],
+    optics: OpticalParts,
 }
 
 impl Fiber {
@@ -120,9 +83,8 @@ impl Fiber {
     ///
     /// # Errors
     /// When the parts do not fit into each other: scales higher than a third of the radius, a
-    /// medulla that reaches the cuticle, septa thicker than the rungs' distance, cells wider than the
-    /// medulla, films thicker than globules, a froth denser than spheres can be packed, fusi in a
-    /// cortex thinner than they are.
+    /// medulla that reaches the cuticle, septa thicker than the rungs' distance, a froth denser
+    /// than spheres can be packed.
     pub fn build(structure: &Structure, seed: u64) -> Result<Self, FiberError> {
         let section = Section::new(structure.diameter_um, structure.aspect);
         let cuticle = &structure.cuticle;
@@ -138,35 +100,20 @@ impl Fiber {
             .then(|| Pattern::new(cuticle, &lines, seed))
             .flatten();
         let (surface, period_um) = match &pattern {
-            None => (Surface::Smooth, Medulla::period_um(structure, None)),
+            None => (Surface::Smooth, Medulla::period_um(structure)),
             Some(pattern) => (
                 Surface::Scales(Box::new(Scales::new(pattern, &lines))),
-                Medulla::period_um(structure, Some(pattern.period_um)),
+                pattern.period_um,
             ),
         };
         let medulla = Medulla::new(structure, &section, surface.rho_min(), period_um, seed)?;
-        let cortex = (medulla.ratio, surface.rho_min());
-        let fusi = fusi::build(
-            structure.cortex.fusi_per_mm,
-            &section,
-            cortex,
-            period_um,
-            seed,
-        )?;
-        let semi = [section.a, section.b];
-        let pigment = Pigment::new(structure, semi, medulla.ratio, period_um, seed);
-        let media = media(structure, &medulla);
-        let eta = indices_between(&media);
         Ok(Self {
             structure: structure.clone(),
             section,
             surface,
             medulla,
-            fusi: fusi.map(Box::new),
-            pigment,
             period_um,
-            media,
-            eta,
+            optics: OpticalParts::new(structure),
         })
     }
 
@@ -175,8 +122,7 @@ impl Fiber {
     /// * `ior`: refractive index of the medium, 1 or more.
     #[must_use]
     pub fn mounted_in(mut self, ior: f64) -> Self {
-        self.media[Region::Outside as usize].ior = ior;
-        self.eta = indices_between(&self.media);
+        self.optics.mount(ior);
         self
     }
 
@@ -202,7 +148,8 @@ impl Fiber {
 
     /// Whether a point is within the outline of the medulla.
     pub fn is_in_medulla(&self, point: DVec3) -> bool {
-        self.medulla.holds(self.section.unit_point(point))
+        let p = self.section.unit_point(point);
+        p.x * p.x + p.y * p.y < self.medulla.ratio * self.medulla.ratio
     }
 
     /// Whether a hit was on the riser of a scale rather than on its face.
@@ -219,28 +166,32 @@ impl Fiber {
     /// Properties of a region.
     #[inline]
     pub fn medium(&self, region: Region) -> &Medium {
-        &self.media[region as usize]
+        &self.optics.media[region as usize]
+    }
+
+    /// What the boundary of a part does to light.
+    #[inline]
+    pub fn optics(&self, part: Part) -> &Optics {
+        &self.optics.boundaries[part as usize]
     }
 
     /// Refractive index of `to` over that of `from`; 1 exactly where they are the same.
     #[inline]
     pub fn eta(&self, from: Region, to: Region) -> f64 {
-        self.eta[from as usize][to as usize]
+        self.optics.eta[from as usize][to as usize]
     }
 
     /// The region that holds a point, found from the shapes alone, without any ray.
     pub fn region_at(&self, point: DVec3) -> Region {
         let unit = self.section.unit_point(point);
-        if !self.surface.contains(unit) {
-            Region::Outside
-        } else if self.fusi.as_ref().is_some_and(|f| f.at(point).is_some()) {
-            Region::Void
-        } else {
+        if self.surface.contains(unit) {
             self.medulla.region_at(&self.section, point)
+        } else {
+            Region::Outside
         }
     }
 
-    /// Share of the medulla's volume that is voids, gaps between its pieces counted; 0 without voids.
+    /// Share of the medulla's volume that is voids; 0 without voids.
     pub fn air_fraction(&self) -> f64 {
         self.medulla.air_fraction(&self.section, self.period_um)
     }
@@ -283,35 +234,47 @@ impl Fiber {
                 let core = |t0, t1| self.core_hit(&rays, t0, t1, element);
                 match self.surface.leave(&rays.unit, outer, core) {
                     Inward::Outer(hit) => self.outer_hit(&rays, hit, Region::Outside),
-                    Inward::Core((t, Element::Outline)) => {
-                        self.outline_hit(&rays, t, Region::Medulla)
-                    }
-                    Inward::Core((t, element @ Element::Fusus(_))) => {
-                        self.void_hit(&rays, t, element, Region::Void)
-                    }
-                    Inward::Core((t, element)) => {
-                        self.void_hit(&rays, t, element, self.medulla.fill())
-                    }
+                    Inward::Core((t, None)) => self.outline_hit(&rays, t, Region::Medulla),
+                    Inward::Core((t, Some(index))) => self.void_hit(&rays, t, index, Region::Void),
                     Inward::Lost => return None,
                 }
             }
-            Region::Medulla if self.medulla.outlined() => {
-                self.outline_from_inside(&rays, element)?
-            }
-            Region::Medulla | Region::Void => {
-                let (t, element) = self.leave_void(&rays, region, element)?;
-                self.void_hit(&rays, t, element, Region::Cortex)
-            }
-        };
-        hit.pigment_um = match region {
-            Region::Outside | Region::Void => 0.0,
-            Region::Medulla => hit.t * self.media[Region::Medulla as usize].pigment,
-            Region::Cortex => {
-                let pieces = self.medulla.pieces.as_ref();
-                self.pigment.along(&rays.unit, hit.t, pieces)
+            // Only meshes have a cuticle of its own.
+            Region::Cuticle => return None,
+            Region::Medulla => self.outline_from_inside(&rays, element)?,
+            Region::Void => {
+                let void = match element {
+                    Some(Element::Void(index)) => Some(index),
+                    _ => None,
+                };
+                let (t, index) = self.medulla.leave_void(&rays, void)?;
+                self.void_hit(&rays, t, index, Region::Cortex)
             }
         };
+        hit.pigment_um = self.pigment_on(&rays, region, hit.t);
         Some(hit)
+    }
+
+    /// The way of a ray that ends within `region`, at a scattering, times the pigment along it,
+    /// relative to the cortex, micrometers. See [`Hit::pigment_um`].
+    ///
+    /// * `t`: length of the way, micrometers, no longer than to the next boundary.
+    pub fn pigment_um(&self, origin: DVec3, dir: DVec3, region: Region, t: f64) -> f64 {
+        let rays = Rays {
+            origin,
+            dir,
+            unit: self.section.unit_ray(origin, dir),
+        };
+        self.pigment_on(&rays, region, t)
+    }
+
+    #[inline]
+    fn pigment_on(&self, rays: &Rays, region: Region, t: f64) -> f64 {
+        match region {
+            Region::Outside | Region::Cuticle | Region::Void => 0.0,
+            Region::Medulla => t * self.structure.medulla.pigment,
+            Region::Cortex => t + self.medulla.extra_pigment(&rays.unit, t),
+        }
     }
 
     /// Where a ray outside enters the fiber.
@@ -321,76 +284,32 @@ impl Fiber {
         Some(self.outer_hit(&Rays { origin, dir, unit }, hit, Region::Cortex))
     }
 
-    /// What inside the fiber a ray in the cortex meets in `t0..t1`: the outline of a homogeneous medulla,
-    /// a void of another, a fusus.
+    /// What of the core a ray in the cortex meets in `t0..t1`: the outline of a homogeneous medulla
+    /// or the void of this index.
     fn core_hit(
         &self,
         rays: &Rays,
         t0: f64,
         t1: f64,
         from: Option<Element>,
-    ) -> Option<(f64, Element)> {
-        let core = self.medulla_hit(rays, t0, t1, from);
-        let Some(fusi) = &self.fusi else {
-            return core;
-        };
-        let from = match from {
-            Some(Element::Fusus(face)) => Some(face),
-            _ => None,
-        };
-        let t1 = core.map_or(t1, |(t, _)| t);
-        let fusus = fusi.enter(rays.origin, rays.dir, t0, t1, from);
-        fusus.map(|(t, face)| (t, Element::Fusus(face))).or(core)
-    }
-
-    fn medulla_hit(
-        &self,
-        rays: &Rays,
-        t0: f64,
-        t1: f64,
-        from: Option<Element>,
-    ) -> Option<(f64, Element)> {
+    ) -> Option<(f64, Option<u32>)> {
         if self.medulla.ratio <= 0.0 {
             return None;
         }
-        if self.medulla.outlined() {
+        if self.medulla.homogeneous() {
             // The outline is convex: a ray that has just left it does not come back.
             if from == Some(Element::Outline) {
                 return None;
             }
             let (t, _) = rays.unit.inside_circle(self.medulla.ratio)?;
-            return (t >= t0 && t < t1).then_some((t, Element::Outline));
+            return (t >= t0 && t < t1).then_some((t, None));
         }
         let from = match from {
             Some(Element::Void(index)) => Some(index),
             _ => None,
         };
         let (t, index) = self.medulla.enter_void(rays, t0, t1, from)?;
-        Some((t, Element::Void(index)))
-    }
-
-    /// Where a ray in a void, or in a piece of a homogeneous medulla, leaves it.
-    fn leave_void(
-        &self,
-        rays: &Rays,
-        region: Region,
-        from: Option<Element>,
-    ) -> Option<(f64, Element)> {
-        let void = match from {
-            Some(Element::Fusus(face)) => {
-                let hit = self.fusi.as_ref()?.leave(rays.origin, rays.dir, Some(face));
-                return hit.map(|(t, face)| (t, Element::Fusus(face)));
-            }
-            Some(Element::Void(index)) => Some(index),
-            _ => None,
-        };
-        if region == self.medulla.fill()
-            && let Some((t, index)) = self.medulla.leave_void(rays, void)
-        {
-            return Some((t, Element::Void(index)));
-        }
-        let (t, face) = self.fusi.as_ref()?.leave(rays.origin, rays.dir, None)?;
-        Some((t, Element::Fusus(face)))
+        Some((t, Some(index)))
     }
 
     /// Where a ray inside a homogeneous medulla leaves it.
@@ -408,72 +327,43 @@ impl Fiber {
     }
 
     fn outer_hit(&self, rays: &Rays, hit: OuterHit, to: Region) -> Hit {
-        let cuticle = &self.structure.cuticle;
-        let roughness = match hit.state {
-            OuterState::Riser { .. } => cuticle.riser_roughness,
-            OuterState::Smooth | OuterState::Face { .. } => cuticle.roughness,
+        let part = match hit.state {
+            OuterState::Riser { .. } => Part::Riser,
+            OuterState::Smooth | OuterState::Face { .. } => Part::Scale,
         };
-        Hit {
-            roughness,
-            ..self.hit(rays, hit.t, hit.gradient, to, Element::Outer(hit.state))
-        }
+        let element = Element::Outer(hit.state);
+        self.hit(rays, hit.t, hit.gradient, to, part, element)
     }
 
     fn outline_hit(&self, rays: &Rays, t: f64, to: Region) -> Hit {
         let p = rays.unit.at(t);
-        self.hit(rays, t, DVec3::new(p.x, p.y, 0.0), to, Element::Outline)
+        let gradient = DVec3::new(p.x, p.y, 0.0);
+        self.hit(rays, t, gradient, to, Part::Medulla, Element::Outline)
     }
 
-    fn void_hit(&self, rays: &Rays, t: f64, element: Element, to: Region) -> Hit {
+    fn void_hit(&self, rays: &Rays, t: f64, index: u32, to: Region) -> Hit {
         let point = rays.origin + t * rays.dir;
-        let gradient = match (element, &self.fusi) {
-            (Element::Fusus(face), Some(fusi)) => {
-                self.section.unit_gradient(fusi.gradient(face, point))
-            }
-            (Element::Void(index), _) => self.medulla.void_gradient(&self.section, point, index),
-            _ => DVec3::Z,
-        };
-        self.hit(rays, t, gradient, to, element)
+        let gradient = self.medulla.void_gradient(&self.section, point, index);
+        self.hit(rays, t, gradient, to, Part::Void, Element::Void(index))
     }
 
-    /// A smooth boundary; `gradient` is its normal in the unit-circle frame, of any length and sign.
-    fn hit(&self, rays: &Rays, t: f64, gradient: DVec3, to: Region, element: Element) -> Hit {
+    /// `gradient`: normal of the boundary in the unit-circle frame, of any length and sign.
+    fn hit(
+        &self,
+        rays: &Rays,
+        t: f64,
+        gradient: DVec3,
+        to: Region,
+        part: Part,
+        element: Element,
+    ) -> Hit {
         Hit {
             t,
             pigment_um: t,
             normal: self.section.normal_against(gradient, rays.dir),
             to,
-            roughness: 0.0,
+            part,
             state: HitState { element },
         }
     }
-}
-
-/// Index of the second region over that of the first.
-fn indices_between(media: &[Medium; 4]) -> [[f64; 4]; 4] {
-    media.map(|near| media.map(|far| far.ior / near.ior))
-}
-
-/// The media of the regions, in their order.
-fn media(structure: &Structure, medulla: &Medulla) -> [Medium; 4] {
-    let clear = |ior, pigment| Medium {
-        ior,
-        pigment,
-        scattering_per_um: 0.0,
-        asymmetry: 0.0,
-    };
-    let core = medulla
-        .medium
-        .map_or(clear(structure.ior, 1.0), |m| Medium {
-            ior: structure.ior,
-            pigment: m.pigment,
-            scattering_per_um: m.scattering_per_um,
-            asymmetry: m.asymmetry,
-        });
-    [
-        clear(1.0, 0.0),
-        clear(structure.ior, 1.0),
-        core,
-        clear(structure.medulla.void_ior, 0.0),
-    ]
 }

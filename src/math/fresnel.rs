@@ -1,4 +1,4 @@
-//! Dielectric reflection and refraction, unpolarized.
+//! Reflection and refraction at dielectrics, thin layers and conductors, unpolarized.
 
 use glam::DVec3;
 
@@ -42,6 +42,54 @@ pub fn reflects(cos_i: f64, eta: f64, inverse: f64, u: f64) -> (bool, f64) {
         2.0 * u * (all * all) < parallel * parallel + perpendicular * perpendicular,
         cos_t,
     )
+}
+
+/// Unpolarized reflectance of a stack of thin slabs, and the cosine behind it.
+///
+/// One slab of single-interface reflectance `r` reflects `r + (1 - r)^2 r / (1 - r^2)`, light
+/// bouncing in it taken into account; `l` of them reflect `l f / (1 + (l - 1) f)`. Each polarization
+/// by itself (Yan et al. 2015, "Physically-accurate fur reflectance"; Stokes' pile of plates).
+///
+/// * `cos_i`, `eta`: as for [`dielectric`]. * `layers`: how many slabs, > 0, fractions allowed.
+#[inline]
+pub fn layered(cos_i: f64, eta: f64, layers: f64) -> (f64, f64) {
+    let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
+    if sin2_t >= 1.0 {
+        return (1.0, 0.0);
+    }
+    let cos_t = (1.0 - sin2_t).sqrt();
+    let stack = |amplitude: f64| {
+        let r = amplitude * amplitude;
+        // The same as in the formula above, without its 0 / 0 at r = 1.
+        let slab = 2.0 * r / (1.0 + r);
+        layers * slab / (1.0 + (layers - 1.0) * slab)
+    };
+    let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    (0.5 * (stack(parallel) + stack(perpendicular)), cos_t)
+}
+
+/// Unpolarized reflectance of a smooth conductor (Born and Wolf, Principles of Optics, 14.2).
+///
+/// * `cos_i`: cosine between the direction and the normal, in `[0, 1]`.
+/// * `n`, `k`: real and imaginary part of its index over the index of the medium before it.
+#[inline]
+pub fn conductor(cos_i: f64, n: f64, k: f64) -> f64 {
+    let cos2 = cos_i * cos_i;
+    let sin2 = 1.0 - cos2;
+    let (n2, k2) = (n * n, k * k);
+    let t0 = n2 - k2 - sin2;
+    let a2b2 = (t0 * t0 + 4.0 * n2 * k2).sqrt();
+    let a = (0.5 * (a2b2 + t0)).max(0.0).sqrt();
+    let perpendicular =
+        (a2b2 + cos2 - 2.0 * a * cos_i) / (a2b2 + cos2 + 2.0 * a * cos_i).max(f64::MIN_POSITIVE);
+    let (t3, t4) = (cos2 * a2b2 + sin2 * sin2, 2.0 * a * cos_i * sin2);
+    let parallel = if t3 + t4 > 0.0 {
+        perpendicular * (t3 - t4) / (t3 + t4)
+    } else {
+        perpendicular
+    };
+    (0.5 * (parallel + perpendicular)).clamp(0.0, 1.0)
 }
 
 /// Mirror direction of a ray traveling along `dir` at a surface with unit normal `n`.
@@ -98,6 +146,41 @@ mod tests {
             let (back, cos_back) = dielectric(cos_t, 1.0 / 1.55);
             assert!((r - back).abs() < 1e-12 && (cos_back - cos_i).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn conductors_are_dielectrics_without_extinction() {
+        for eta in [1.55, 1.0 / 1.55] {
+            for i in 0..=100 {
+                let cos_i = f64::from(i) / 100.0;
+                let (expected, _) = dielectric(cos_i, eta);
+                let found = conductor(cos_i, eta, 0.0);
+                assert!((found - expected).abs() < 1e-9, "{cos_i}: {found}");
+            }
+        }
+        // At normal incidence ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2); gold at 617 nm.
+        let expected = (0.79f64 * 0.79 + 3.272 * 3.272) / (1.21 * 1.21 + 3.272 * 3.272);
+        assert!((conductor(1.0, 0.21, 3.272) - expected).abs() < 1e-12);
+        assert!((conductor(0.0, 0.21, 3.272) - 1.0).abs() < 1e-12);
+        assert!(conductor(0.5, 1.0, 1e6) > 1.0 - 1e-5);
+    }
+
+    #[test]
+    fn layers_reflect_by_the_formula() {
+        // Keratin in air at normal incidence: one slab 0.089, half a one 0.047, two 0.163, five 0.33.
+        for (layers, expected) in [(1.0, 0.0889), (0.5, 0.0465), (2.0, 0.1633), (5.0, 0.3280)] {
+            let (found, cos_t) = layered(1.0, 1.55, layers);
+            assert!((found - expected).abs() < 1e-4, "{layers}: {found}");
+            assert!((cos_t - 1.0).abs() < 1e-12);
+        }
+        for i in 1..100 {
+            let cos_i = f64::from(i) / 100.0;
+            let (forward, cos_t) = layered(cos_i, 1.55, 1.7);
+            let (back, _) = layered(cos_t, 1.0 / 1.55, 1.7);
+            assert!((forward - back).abs() < 1e-12);
+            assert!(forward > dielectric(cos_i, 1.55).0);
+        }
+        assert_eq!(layered(0.1, 1.0 / 1.55, 0.5), (1.0, 0.0));
     }
 
     #[test]

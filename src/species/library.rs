@@ -11,19 +11,32 @@ macro_rules! library {
 #[rustfmt::skip]
 pub const LIBRARY: &[(&str, &str)] = library![
     // Cats: Felidae
+    "cat"
+    "lynx"
+    "bobcat"
 
     // Dogs and foxes: Canidae
     "red-fox"
+    "arctic-fox"
+    "wolf"
+    "dog"
 
     // Raccoons: Procyonidae
+    "raccoon"
 
-    // Weasels: Mustelidae
+    // Weasels and otters: Mustelidae
     "mink"
+    "river-otter"
+    "sea-otter"
+    "badger"
 
     // Bears: Ursidae
+    "brown-bear"
     "polar-bear"
 
     // Seals: Phocidae, Otariidae
+    "harbor-seal"
+    "fur-seal"
 
     // Rabbits and hares: Leporidae
     "rabbit"

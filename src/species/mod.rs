@@ -10,6 +10,7 @@ mod error;
 mod fields;
 mod library;
 mod lookup;
+mod materials;
 pub mod model;
 mod origin;
 mod overrides;
@@ -19,6 +20,7 @@ mod tree;
 
 pub use error::{Place, Problem, SpeciesError, SpeciesErrors};
 pub use library::{LIBRARY, ids};
+pub use materials::{Boundary, Filling, Material, Materials, Rgb};
 pub use model::*;
 pub use origin::{Cited, Origin, Origins, Reference};
 pub use schema::json_schema;

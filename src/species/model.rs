@@ -1,6 +1,7 @@
 //! A validated species: plain data, every value finite and in range. Nothing after this module can
 //! meet a bad number. Lengths carry their unit in the name, angles are degrees as in the files.
 
+use super::materials::Materials;
 use serde::Serialize;
 
 /// One animal.
@@ -70,6 +71,8 @@ pub struct Structure {
     pub cortex: Cortex,
     /// The core.
     pub medulla: Medulla,
+    /// What the parts are made of, where that is not plain keratin and air.
+    pub materials: Materials,
 }
 
 /// Shape of a cross-section; size and aspect are those of the [`Structure`].
@@ -321,6 +324,7 @@ impl Default for Structure {
             cuticle: Cuticle::default(),
             cortex: Cortex::default(),
             medulla: Medulla::default(),
+            materials: Materials::default(),
         }
     }
 }

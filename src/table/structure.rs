@@ -11,7 +11,7 @@ pub struct Ledger {
     pub emitted: u64,
     /// Left the fiber.
     pub escaped: u64,
-    /// Absorbed by pigment.
+    /// Absorbed by pigment, by other absorbing media and at opaque boundaries.
     pub absorbed: u64,
     /// Still inside after the last allowed event.
     pub truncated: u64,

@@ -3,7 +3,7 @@
 use super::super::pattern::Pattern;
 use super::super::section::Section;
 use super::super::surface::Surface;
-use super::super::{Fiber, Region};
+use super::super::{Fiber, Part, Region};
 use crate::math::frame::direction;
 use crate::sampling::Rng;
 use crate::species::CuticlePattern;
@@ -64,7 +64,7 @@ fn faces_lean_to_the_root_by_the_tilt() {
                     direction(0.0, phi) * 90.0 + DVec3::Z * fiber.period_um() * rng.uniform();
                 let hit = fiber.next_hit(from, -direction(0.0, phi), Region::Outside, None);
                 let hit = hit.unwrap();
-                if hit.roughness == s.cuticle.roughness {
+                if hit.part == Part::Scale {
                     tilt -= hit.normal.z.asin().to_degrees();
                     faces += 1;
                 }

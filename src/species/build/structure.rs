@@ -1,6 +1,7 @@
 //! Stations: values from the station, else from the class's `structure`, else from the species'.
 
 use super::{Reader, number, number_of, place_of, tables};
+use crate::species::Materials;
 use crate::species::check::{Checked, Item, Value, join};
 use crate::species::error::Place;
 use crate::species::model::{
@@ -131,6 +132,7 @@ impl Reader<'_> {
             cuticle: cuticle?,
             cortex,
             medulla: medulla?,
+            materials: Materials::default(),
         })
     }
 

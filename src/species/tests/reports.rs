@@ -133,7 +133,7 @@ fn columns_count_characters_and_lines_any_ending() {
 fn unknown_names_suggest_and_blame_the_input() {
     for (name, hint) in [
         ("red-fix", "did you mean red-fox?"),
-        ("zebra", "built in are red-fox"),
+        ("zebra", "built in are cat"),
     ] {
         match load(name, &[]) {
             Err(SpeciesError::UnknownName { hint: said, .. }) => assert!(said.contains(hint)),
