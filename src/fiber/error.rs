@@ -35,6 +35,39 @@ pub enum FiberError {
         /// Distance between rungs.
         pitch_um: f64,
     },
+    /// Not one cell fits across the medulla.
+    #[error(
+        "cells of {cell_um} um do not fit into a medulla {medulla_um:.2} um wide: lower the size of \
+         cells and walls or raise medulla.ratio"
+    )]
+    CellTooWide {
+        /// Width of a cell.
+        cell_um: f64,
+        /// Least width of the medulla.
+        medulla_um: f64,
+    },
+    /// Nothing is left of a globule inside its film of air.
+    #[error(
+        "a film of {film_um} um leaves nothing of a globule {globule_um:.2} um thick: lower \
+         medulla.kind.film_um or raise spacing"
+    )]
+    FilmTooThick {
+        /// Thickness of the film.
+        film_um: f64,
+        /// Least diameter of the globule with its film.
+        globule_um: f64,
+    },
+    /// Fusi need cortex to lie in.
+    #[error(
+        "cortical fusi need {needed_um} um of cortex, here are {cortex_um:.2} um: lower \
+         medulla.ratio or set cortex.fusi_per_mm to 0"
+    )]
+    NoRoomForFusi {
+        /// Least thickness of the cortex.
+        needed_um: f64,
+        /// Its thickness.
+        cortex_um: f64,
+    },
     /// Spheres that do not touch cannot fill as much.
     #[error(
         "a froth of {asked} air cannot be packed, only {reached:.3}: lower \

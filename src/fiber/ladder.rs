@@ -13,6 +13,8 @@ pub(super) struct Puck {
     pub(super) radius: f64,
     inverse_half: f64,
     inverse_radius2: f64,
+    /// Whether it is there: an interrupted ladder keeps the places of all rungs.
+    present: bool,
 }
 
 /// The pucks of one period in order of z; they never touch.
@@ -56,6 +58,7 @@ impl Ladder {
                     radius: WIDTH * ratio * breadth,
                     inverse_half: 0.0,
                     inverse_radius2: 0.0,
+                    present: true,
                 }
             })
             .collect();
@@ -83,6 +86,18 @@ impl Ladder {
             inverse_period: 1.0 / period,
             rate: 1.0 / pitch,
         }
+    }
+
+    /// Takes away the pucks where `there` says no of their centers.
+    pub(super) fn keep(&mut self, there: impl Fn(f64) -> bool) {
+        for puck in &mut self.pucks {
+            puck.present = there(puck.center);
+        }
+    }
+
+    /// The pucks that are there.
+    pub(super) fn present(&self) -> impl Iterator<Item = &Puck> {
+        self.pucks.iter().filter(|p| p.present)
     }
 
     /// The rung whose pitch holds `z`; its puck may be shifted into a neighbor's.
@@ -167,7 +182,8 @@ impl Ladder {
             if (center - z1) * forward > puck.half {
                 return None;
             }
-            if (z0 - center) * forward <= puck.half
+            if puck.present
+                && (z0 - center) * forward <= puck.half
                 && let Some(t) = puck.enter(ray, inverse_dz, center, (a, b), (t0, t1))
             {
                 return Some((t, rung.index as u32));
@@ -189,13 +205,14 @@ impl Ladder {
             .into_iter()
             .find_map(|rung| {
                 let puck = &self.pucks[rung.index];
-                (puck.level(p, puck.center + rung.base) < 0.0).then_some(rung.index as u32)
+                (puck.present && puck.level(p, puck.center + rung.base) < 0.0)
+                    .then_some(rung.index as u32)
             })
     }
 
     /// Share of the medulla's cross-section times period that is void.
     pub(super) fn air_fraction(&self, ratio: f64) -> f64 {
-        let volume: f64 = self.pucks.iter().map(Puck::volume).sum();
+        let volume: f64 = self.present().map(Puck::volume).sum();
         volume / (std::f64::consts::PI * ratio * ratio * self.period)
     }
 }

@@ -1,20 +1,34 @@
 //! The core of the fiber: nothing, a homogeneous medium, or voids in a matrix of keratin.
 
+mod channel;
+mod cloisonne;
+mod columns;
+mod detail;
+mod globules;
+mod lattice;
+mod pieces;
+
+pub(super) use detail::Homogeneous;
+pub(super) use pieces::Pieces;
+
+use super::bodies::{Bodies, Convex, Plane, Quadric};
 use super::froth::Froth;
 use super::ladder::Ladder;
 use super::packing::Recipe;
 use super::section::{Section, UnitRay};
 use super::{FiberError, Region};
 use crate::species::{MedullaKind, Structure};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// What fills the medulla.
 #[derive(Clone, Debug)]
 pub(super) enum Voids {
-    /// A homogeneous medium.
+    /// Nothing but, perhaps, a homogeneous medium.
     None,
     Ladder(Ladder),
     Froth(Froth),
+    /// Voids of any shape, or pieces of a homogeneous medium.
+    Bodies(Box<Bodies>),
 }
 
 /// The medulla of a fiber.
@@ -22,24 +36,73 @@ pub(super) enum Voids {
 pub(super) struct Medulla {
     /// Radius in units of the semi-axes; 0 for none.
     pub(super) ratio: f64,
-    /// Pigment of the walls between voids above that of the cortex, -1 for clear walls.
-    excess_pigment: f64,
     pub(super) voids: Voids,
+    /// The medium, where there is one instead of voids.
+    pub(super) medium: Option<Homogeneous>,
+    /// Where along the hair it is; `None` for everywhere.
+    pub(super) pieces: Option<Pieces>,
 }
 
-/// Least cortex between voids and cuticle, micrometers (voids nearer are only known of lattices).
+/// The room that voids may take in one period.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Room {
+    /// Semi-axes of the ellipse across, micrometers.
+    semi: DVec2,
+    period: f64,
+    seed: u64,
+}
+
+/// Least cortex between voids and cuticle, micrometers; lattices come nearer.
 const LEAST_CORTEX_UM: f64 = 1.0;
-/// Length of a period without scales, in pitches of a ladder, and least length in micrometers.
+const LEAST_CORTEX_OF_LATTICE_UM: f64 = 0.5;
+/// Length of a period in pitches or cells, and least length without scales in micrometers. Fewer
+/// repeat visibly.
 const RUNGS: f64 = 10.0;
 const LEAST_PERIOD_UM: f64 = 100.0;
+/// Least length of a period with scales, in pitches or cells: bodies must be shorter than half of it.
+const LEAST_RUNGS: f64 = 4.0;
+/// Median radius of bubbles that have no size of their own: deviation of its logarithm.
+const AMORPHOUS_SIGMA: f64 = 0.35;
+/// Depth of the dents in the wall of a froth, as a share of the radius.
+const FROTH_WOBBLE: f64 = 0.1;
+
+/// Distance along the hair after which the voids are others, micrometers.
+fn unit_um(structure: &Structure) -> f64 {
+    match structure.medulla.kind {
+        MedullaKind::Ladder { pitch_um, .. }
+        | MedullaKind::Multiserial { pitch_um, .. }
+        | MedullaKind::SChannel { pitch_um }
+        | MedullaKind::Cloisonne { pitch_um, .. }
+        | MedullaKind::TireTread { pitch_um, .. } => pitch_um,
+        MedullaKind::Lattice { cell_um, .. } => 1.2 * cell_um,
+        MedullaKind::Globules { spacing, .. } => {
+            spacing * structure.medulla.ratio * structure.diameter_um
+        }
+        MedullaKind::Froth { radius_um, .. } | MedullaKind::Amorphous { radius_um, .. } => {
+            1.2 * radius_um
+        }
+        MedullaKind::None | MedullaKind::Medium { .. } => 0.0,
+    }
+}
 
 impl Medulla {
-    /// Length of a period that suits the medulla alone.
-    pub(super) fn period_um(structure: &Structure) -> f64 {
-        match structure.medulla.kind {
-            MedullaKind::Ladder { pitch_um, .. } => RUNGS * pitch_um,
-            MedullaKind::Froth { radius_um, .. } => (12.0 * radius_um).max(LEAST_PERIOD_UM),
-            _ => LEAST_PERIOD_UM,
+    /// Length of a period: that of the scales as often as the medulla needs, or what suits the medulla
+    /// where there are no scales.
+    pub(super) fn period_um(structure: &Structure, scales_um: Option<f64>) -> f64 {
+        if structure.medulla.ratio <= 0.0 {
+            return scales_um.unwrap_or(LEAST_PERIOD_UM);
+        }
+        let unit = unit_um(structure);
+        let pieces = pieces::least_period_um(structure.medulla.continuity);
+        match scales_um {
+            Some(scales) => scales * (pieces.max(LEAST_RUNGS * unit) / scales).ceil().max(1.0),
+            None => {
+                let whole = match structure.medulla.kind {
+                    MedullaKind::Ladder { .. } => RUNGS * unit,
+                    _ => (RUNGS * unit).max(LEAST_PERIOD_UM),
+                };
+                whole * (pieces / whole).ceil().max(1.0)
+            }
         }
     }
 
@@ -56,8 +119,9 @@ impl Medulla {
         if ratio <= 0.0 || medulla.kind == MedullaKind::None {
             return Ok(Self {
                 ratio: 0.0,
-                excess_pigment: 0.0,
                 voids: Voids::None,
+                medium: None,
+                pieces: None,
             });
         }
         let least_radius = rho_min * section.b;
@@ -67,7 +131,50 @@ impl Medulla {
                 cuticle_um: least_radius,
             });
         }
-        let voids = match medulla.kind {
+        let cortex = match medulla.kind {
+            MedullaKind::Lattice { .. } => LEAST_CORTEX_OF_LATTICE_UM,
+            _ => LEAST_CORTEX_UM,
+        };
+        let reach = ratio.min(rho_min - cortex / section.b).max(0.0);
+        let axes = DVec2::new(section.a, section.b);
+        let room = Room {
+            semi: reach * axes,
+            period,
+            seed,
+        };
+        let pieces = Pieces::new(medulla.continuity, period, seed);
+        let radius = ratio * (section.a * section.b).sqrt();
+        let medium = detail::medium(medulla, radius, period);
+        let mut core = Self {
+            ratio,
+            voids: Voids::None,
+            medium,
+            pieces,
+        };
+        if medium.is_none() {
+            core.voids = core.build(structure, section, &room)?;
+        } else if let Some(pieces) = &core.pieces {
+            let cylinders = cylinders(pieces, ratio * axes, period);
+            let half = (ratio * axes).to_array();
+            core.voids = Voids::Bodies(Box::new(Bodies::new(cylinders, period, half, true)));
+        }
+        Ok(core)
+    }
+
+    /// The voids of a kind that has some.
+    fn build(
+        &self,
+        structure: &Structure,
+        section: &Section,
+        room: &Room,
+    ) -> Result<Voids, FiberError> {
+        let (period, seed) = (room.period, room.seed);
+        let bodies = |all: Vec<Convex>, unions| {
+            let kept = self.within_pieces(all, |c| c.center.z);
+            let half = (self.ratio * DVec2::new(section.a, section.b)).to_array();
+            Voids::Bodies(Box::new(Bodies::new(kept, period, half, unions)))
+        };
+        Ok(match structure.medulla.kind {
             MedullaKind::Ladder {
                 pitch_um,
                 septum_um,
@@ -79,70 +186,128 @@ impl Medulla {
                         pitch_um: period / count,
                     });
                 }
-                Voids::Ladder(Ladder::new(ratio, period, count as usize, septum_um, seed))
+                let mut ladder = Ladder::new(self.ratio, period, count as usize, septum_um, seed);
+                if let Some(pieces) = &self.pieces {
+                    ladder.keep(|z| pieces.holds(z));
+                }
+                Voids::Ladder(ladder)
             }
+            MedullaKind::Multiserial {
+                cell_um,
+                pitch_um,
+                septum_um,
+            } => bodies(
+                columns::multiserial(cell_um, pitch_um, septum_um).build(room)?,
+                false,
+            ),
+            MedullaKind::TireTread {
+                pitch_um,
+                cell_um,
+                septum_um,
+            } => bodies(
+                columns::tire_tread(cell_um, pitch_um, septum_um).build(room)?,
+                false,
+            ),
+            MedullaKind::Lattice { cell_um, wall_um } => {
+                bodies(lattice::build(room, cell_um, wall_um)?, false)
+            }
+            MedullaKind::SChannel { pitch_um } => bodies(channel::build(room, pitch_um), true),
+            MedullaKind::Cloisonne {
+                columns,
+                pitch_um,
+                height_um,
+            } => {
+                let ovals = cloisonne::Ovals {
+                    columns,
+                    pitch_um,
+                    height_um,
+                };
+                bodies(ovals.build(room)?, true)
+            }
+            MedullaKind::Globules { spacing, film_um } => {
+                bodies(globules::build(room, spacing, film_um)?, false)
+            }
+            MedullaKind::Amorphous {
+                radius_um,
+                air_fraction,
+            } => self.froth(section, room, [radius_um, AMORPHOUS_SIGMA, air_fraction])?,
             MedullaKind::Froth {
                 radius_um,
                 radius_sigma,
                 air_fraction,
-            } => {
-                let reach = ratio.min(rho_min - LEAST_CORTEX_UM / section.b);
-                let recipe = Recipe {
-                    radius_um,
-                    radius_sigma,
-                    air_fraction,
-                    ratio,
-                    reach: reach.max(0.0),
-                    period,
-                };
-                let packing =
-                    recipe
-                        .pack(section, seed)
-                        .map_err(|reached| FiberError::FrothTooDense {
-                            asked: air_fraction,
-                            reached,
-                        })?;
-                Voids::Froth(Froth::new(packing, section, ratio))
-            }
-            _ => Voids::None,
+            } => self.froth(section, room, [radius_um, radius_sigma, air_fraction])?,
+            MedullaKind::None | MedullaKind::Medium { .. } => Voids::None,
+        })
+    }
+
+    fn froth(
+        &self,
+        section: &Section,
+        room: &Room,
+        [radius_um, radius_sigma, air_fraction]: [f64; 3],
+    ) -> Result<Voids, FiberError> {
+        let recipe = Recipe {
+            radius_um,
+            radius_sigma,
+            air_fraction,
+            volume: self.ratio
+                * self.ratio
+                * section.a
+                * section.b
+                * std::f64::consts::PI
+                * room.period,
+            semi: room.semi,
+            wobble: FROTH_WOBBLE,
+            period: room.period,
         };
-        Ok(Self {
-            ratio,
-            excess_pigment: medulla.pigment - 1.0,
-            voids,
-        })
+        let spheres = recipe
+            .pack(room.seed)
+            .map_err(|reached| FiberError::FrothTooDense {
+                asked: air_fraction,
+                reached,
+            })?;
+        let spheres = self.within_pieces(spheres, |s| s.center.z);
+        let half = [self.ratio * section.a, self.ratio * section.b];
+        Ok(Voids::Froth(Froth::new(spheres, room.period, half)))
     }
 
-    /// Whether it is one medium with an outline of its own. The walls between voids are cortex.
-    #[inline]
-    pub(super) fn homogeneous(&self) -> bool {
-        matches!(self.voids, Voids::None)
+    /// Those voids that lie in a piece of the medulla: pieces end at whole voids.
+    fn within_pieces<T>(&self, mut all: Vec<T>, z: impl Fn(&T) -> f64) -> Vec<T> {
+        if let Some(pieces) = &self.pieces {
+            all.retain(|item| pieces.holds(z(item)));
+        }
+        all
     }
 
-    /// What the walls between voids add to the pigment along a ray through keratin from 0 to `t`.
+    /// Whether the outline is the boundary of a medium that runs through.
     #[inline]
-    pub(super) fn extra_pigment(&self, ray: &UnitRay, t: f64) -> f64 {
-        if self.excess_pigment == 0.0 || self.homogeneous() {
-            return 0.0;
+    pub(super) fn outlined(&self) -> bool {
+        self.medium.is_some() && self.pieces.is_none()
+    }
+
+    /// What lies in the bodies: air, or a homogeneous medium that comes in pieces.
+    #[inline]
+    pub(super) fn fill(&self) -> Region {
+        if self.medium.is_some() {
+            Region::Medulla
+        } else {
+            Region::Void
         }
-        // The medulla is convex: from one place in it to another all of the way is.
-        let end = ray.c + t * (2.0 * ray.b + t * ray.a);
-        if ray.c.max(end) <= self.ratio * self.ratio {
-            return self.excess_pigment * t;
-        }
-        ray.inside_circle(self.ratio).map_or(0.0, |(a, b)| {
-            self.excess_pigment * (b.min(t) - a.max(0.0)).max(0.0)
-        })
     }
 
     /// Share of the medulla's volume that is voids.
     pub(super) fn air_fraction(&self, section: &Section, period: f64) -> f64 {
         match &self.voids {
+            _ if self.medium.is_some() => 0.0,
             Voids::None => 0.0,
             Voids::Ladder(ladder) => ladder.air_fraction(self.ratio),
             Voids::Froth(froth) => {
                 let across = std::f64::consts::PI * self.ratio * self.ratio;
                 froth.volume() / (across * section.a * section.b * period)
+            }
+            Voids::Bodies(bodies) => {
+                let semi = self.ratio * DVec2::new(section.a, section.b);
+                detail::measured_air(bodies, semi, period)
             }
         }
     }
@@ -167,6 +332,13 @@ impl Medulla {
                     .then(|| froth.enter(rays.origin, rays.dir, t0, t1, from))
                     .flatten()
             }
+            Voids::Bodies(bodies) => {
+                let (a, b) = rays.unit.inside_circle(self.ratio)?;
+                let (t0, t1) = (t0.max(a), t1.min(b));
+                (t0 < t1)
+                    .then(|| bodies.enter(rays.origin, rays.dir, t0, t1, from))
+                    .flatten()
+            }
         }
     }
 
@@ -184,6 +356,7 @@ impl Medulla {
                 let t = froth.leave(rays.origin, rays.dir, index, from.is_some());
                 Some((t, index))
             }
+            Voids::Bodies(bodies) => bodies.leave(rays.origin, rays.dir, from),
         }
     }
 
@@ -198,30 +371,56 @@ impl Medulla {
                     .puck(index)
                     .gradient(unit, ladder.center_near(index, point.z))
             }
-            Voids::Froth(froth) => {
-                let n = point - froth.center_near(index, point.z);
-                DVec3::new(n.x * section.a, n.y * section.b, n.z)
-            }
+            Voids::Froth(froth) => section.unit_gradient(point - froth.center_near(index, point.z)),
+            Voids::Bodies(bodies) => section.unit_gradient(bodies.gradient(index, point)),
         }
+    }
+
+    /// Whether a point is within the outline of the medulla and of one of its pieces.
+    pub(super) fn holds(&self, unit: DVec3) -> bool {
+        unit.x * unit.x + unit.y * unit.y < self.ratio * self.ratio
+            && self.pieces.as_ref().is_none_or(|p| p.holds(unit.z))
     }
 
     /// The region of a point inside the cuticle.
     pub(super) fn region_at(&self, section: &Section, point: DVec3) -> Region {
         let unit = section.unit_point(point);
-        let void = match &self.voids {
-            Voids::None => None,
-            Voids::Ladder(ladder) => ladder.at(unit),
-            Voids::Froth(froth) => froth.at(point),
+        let inside = match &self.voids {
+            Voids::None => self.outlined() && self.holds(unit),
+            Voids::Ladder(ladder) => ladder.at(unit).is_some(),
+            Voids::Froth(froth) => froth.at(point).is_some(),
+            Voids::Bodies(bodies) => bodies.at(point).is_some(),
         };
-        if void.is_some() {
-            Region::Void
-        } else if self.homogeneous() && unit.x * unit.x + unit.y * unit.y < self.ratio * self.ratio
-        {
-            Region::Medulla
-        } else {
-            Region::Cortex
+        if inside { self.fill() } else { Region::Cortex }
+    }
+}
+
+/// Pieces of a homogeneous medulla as cylinders that overlap, each shorter than half a period.
+fn cylinders(pieces: &Pieces, semi: DVec2, period: f64) -> Vec<Convex> {
+    const OVERLAP_UM: f64 = 0.5;
+    let outline = Quadric::ellipsoid(DVec3::ZERO, semi.extend(f64::INFINITY));
+    let mut all = Vec::new();
+    for &[z0, z1] in pieces.spans() {
+        let count = (4.0 * (z1 - z0) / period).ceil().max(1.0);
+        let step = (z1 - z0) / count;
+        for k in 0..count as u32 {
+            let begin = z0 + f64::from(k) * step;
+            let end = (begin + step + OVERLAP_UM).min(z1);
+            let half = 0.5 * (end - begin);
+            let plane = |normal| Plane {
+                normal,
+                offset: half,
+            };
+            all.push(Convex {
+                center: DVec3::Z * (begin + half),
+                half: semi.extend(half),
+                planes: vec![plane(DVec3::Z), plane(DVec3::NEG_Z)],
+                quadrics: vec![outline],
+                island: false,
+            });
         }
     }
+    all
 }
 
 /// A ray in both frames.

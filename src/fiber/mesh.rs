@@ -88,8 +88,19 @@ impl Fiber {
         let (a, b) = (self.section.a, self.section.b);
         match &self.medulla.voids {
             Voids::None => cylinder(&mut weld, self.medulla.ratio, self.period_um),
+            Voids::Bodies(bodies) => {
+                // Convex: from the center out to the boundary in every direction.
+                for body in 0..bodies.len() as u32 {
+                    closed(&mut weld, |theta, phi| {
+                        let (sin, cos) = theta.sin_cos();
+                        let dir = DVec3::new(sin * phi.cos(), sin * phi.sin(), cos);
+                        let p = bodies.boundary(body, dir);
+                        DVec3::new(p.x / a, p.y / b, p.z)
+                    });
+                }
+            }
             Voids::Ladder(ladder) => {
-                for p in &ladder.pucks {
+                for p in ladder.present() {
                     let half = |c: f64| c.abs().sqrt().copysign(c);
                     closed(&mut weld, |theta, phi| {
                         // The exponent 4 of the superellipsoid: square roots of sine and cosine.
@@ -135,7 +146,8 @@ impl Fiber {
     pub fn void_count(&self) -> usize {
         match &self.medulla.voids {
             Voids::None => 0,
-            Voids::Ladder(ladder) => ladder.pucks.len(),
+            Voids::Ladder(ladder) => ladder.present().count(),
+            Voids::Bodies(bodies) => bodies.len(),
             Voids::Froth(froth) => froth.spheres.len(),
         }
     }

@@ -3,10 +3,14 @@
 //! Fiber frame: +Z is the tangent, root to tip; micrometers. The geometry repeats along z with
 //! [`Fiber::period_um`]; rays may start and end at any z.
 
+mod bodies;
+mod cortex;
 mod covering;
 mod crossing;
 mod error;
 mod froth;
+mod fusi;
+mod grid;
 mod ladder;
 mod march;
 mod medulla;
@@ -17,6 +21,7 @@ mod pattern;
 mod scales;
 mod section;
 mod surface;
+mod voronoi;
 
 #[cfg(test)]
 mod tests;
@@ -26,6 +31,8 @@ pub use mesh::MeshPart;
 pub use optics::{Medium, Optics, Part, Region};
 
 use crate::species::{CuticlePattern, Structure};
+use bodies::Bodies;
+use cortex::Pigment;
 use glam::DVec3;
 use medulla::{Medulla, Rays};
 use optics::OpticalParts;
@@ -65,6 +72,8 @@ enum Element {
     /// The outline of a medulla without voids.
     Outline,
     Void(u32),
+    /// A face of a cortical fusus.
+    Fusus(u32),
 }
 
 /// One period of a fiber.
@@ -74,6 +83,8 @@ pub struct Fiber {
     section: Section,
     surface: Surface,
     medulla: Medulla,
+    fusi: Option<Box<Bodies>>,
+    pigment: Pigment,
     period_um: f64,
     optics: OpticalParts,
 }
@@ -83,8 +94,9 @@ impl Fiber {
     ///
     /// # Errors
     /// When the parts do not fit into each other: scales higher than a third of the radius, a
-    /// medulla that reaches the cuticle, septa thicker than the rungs' distance, a froth denser
-    /// than spheres can be packed.
+    /// medulla that reaches the cuticle, septa thicker than the rungs' distance, cells wider than the
+    /// medulla, films thicker than globules, a froth denser than spheres can be packed, fusi in a
+    /// cortex thinner than they are.
     pub fn build(structure: &Structure, seed: u64) -> Result<Self, FiberError> {
         let section = Section::new(structure.diameter_um, structure.aspect);
         let cuticle = &structure.cuticle;
@@ -100,20 +112,33 @@ impl Fiber {
             .then(|| Pattern::new(cuticle, &lines, seed))
             .flatten();
         let (surface, period_um) = match &pattern {
-            None => (Surface::Smooth, Medulla::period_um(structure)),
+            None => (Surface::Smooth, Medulla::period_um(structure, None)),
             Some(pattern) => (
                 Surface::Scales(Box::new(Scales::new(pattern, &lines))),
-                pattern.period_um,
+                Medulla::period_um(structure, Some(pattern.period_um)),
             ),
         };
         let medulla = Medulla::new(structure, &section, surface.rho_min(), period_um, seed)?;
+        let cortex = (medulla.ratio, surface.rho_min());
+        let fusi = fusi::build(
+            structure.cortex.fusi_per_mm,
+            &section,
+            cortex,
+            period_um,
+            seed,
+        )?;
+        let semi = [section.a, section.b];
+        let pigment = Pigment::new(structure, semi, medulla.ratio, period_um, seed);
+        let optics = OpticalParts::new(structure, medulla.medium.as_ref());
         Ok(Self {
             structure: structure.clone(),
             section,
             surface,
             medulla,
+            fusi: fusi.map(Box::new),
+            pigment,
             period_um,
-            optics: OpticalParts::new(structure),
+            optics,
         })
     }
 
@@ -148,8 +173,7 @@ impl Fiber {
 
     /// Whether a point is within the outline of the medulla.
     pub fn is_in_medulla(&self, point: DVec3) -> bool {
-        let p = self.section.unit_point(point);
-        p.x * p.x + p.y * p.y < self.medulla.ratio * self.medulla.ratio
+        self.medulla.holds(self.section.unit_point(point))
     }
 
     /// Whether a hit was on the riser of a scale rather than on its face.
@@ -184,14 +208,16 @@ impl Fiber {
     /// The region that holds a point, found from the shapes alone, without any ray.
     pub fn region_at(&self, point: DVec3) -> Region {
         let unit = self.section.unit_point(point);
-        if self.surface.contains(unit) {
-            self.medulla.region_at(&self.section, point)
-        } else {
+        if !self.surface.contains(unit) {
             Region::Outside
+        } else if self.fusi.as_ref().is_some_and(|f| f.at(point).is_some()) {
+            Region::Void
+        } else {
+            self.medulla.region_at(&self.section, point)
         }
     }
 
-    /// Share of the medulla's volume that is voids; 0 without voids.
+    /// Share of the medulla's volume that is voids, gaps between its pieces counted; 0 without voids.
     pub fn air_fraction(&self) -> f64 {
         self.medulla.air_fraction(&self.section, self.period_um)
     }
@@ -234,21 +260,26 @@ impl Fiber {
                 let core = |t0, t1| self.core_hit(&rays, t0, t1, element);
                 match self.surface.leave(&rays.unit, outer, core) {
                     Inward::Outer(hit) => self.outer_hit(&rays, hit, Region::Outside),
-                    Inward::Core((t, None)) => self.outline_hit(&rays, t, Region::Medulla),
-                    Inward::Core((t, Some(index))) => self.void_hit(&rays, t, index, Region::Void),
+                    Inward::Core((t, Element::Outline)) => {
+                        self.outline_hit(&rays, t, Region::Medulla)
+                    }
+                    Inward::Core((t, element @ Element::Fusus(_))) => {
+                        self.void_hit(&rays, t, element, Region::Void)
+                    }
+                    Inward::Core((t, element)) => {
+                        self.void_hit(&rays, t, element, self.medulla.fill())
+                    }
                     Inward::Lost => return None,
                 }
             }
             // Only meshes have a cuticle of its own.
             Region::Cuticle => return None,
-            Region::Medulla => self.outline_from_inside(&rays, element)?,
-            Region::Void => {
-                let void = match element {
-                    Some(Element::Void(index)) => Some(index),
-                    _ => None,
-                };
-                let (t, index) = self.medulla.leave_void(&rays, void)?;
-                self.void_hit(&rays, t, index, Region::Cortex)
+            Region::Medulla if self.medulla.outlined() => {
+                self.outline_from_inside(&rays, element)?
+            }
+            Region::Medulla | Region::Void => {
+                let (t, element) = self.leave_void(&rays, region, element)?;
+                self.void_hit(&rays, t, element, Region::Cortex)
             }
         };
         hit.pigment_um = self.pigment_on(&rays, region, hit.t);
@@ -272,8 +303,11 @@ impl Fiber {
     fn pigment_on(&self, rays: &Rays, region: Region, t: f64) -> f64 {
         match region {
             Region::Outside | Region::Cuticle | Region::Void => 0.0,
-            Region::Medulla => t * self.structure.medulla.pigment,
-            Region::Cortex => t + self.medulla.extra_pigment(&rays.unit, t),
+            Region::Medulla => t * self.medium(region).pigment,
+            Region::Cortex => {
+                let pieces = self.medulla.pieces.as_ref();
+                self.pigment.along(&rays.unit, t, pieces)
+            }
         }
     }
 
@@ -284,32 +318,76 @@ impl Fiber {
         Some(self.outer_hit(&Rays { origin, dir, unit }, hit, Region::Cortex))
     }
 
-    /// What of the core a ray in the cortex meets in `t0..t1`: the outline of a homogeneous medulla
-    /// or the void of this index.
+    /// What inside the fiber a ray in the cortex meets in `t0..t1`: the outline of a homogeneous medulla,
+    /// a void of another, a fusus.
     fn core_hit(
         &self,
         rays: &Rays,
         t0: f64,
         t1: f64,
         from: Option<Element>,
-    ) -> Option<(f64, Option<u32>)> {
+    ) -> Option<(f64, Element)> {
+        let core = self.medulla_hit(rays, t0, t1, from);
+        let Some(fusi) = &self.fusi else {
+            return core;
+        };
+        let from = match from {
+            Some(Element::Fusus(face)) => Some(face),
+            _ => None,
+        };
+        let t1 = core.map_or(t1, |(t, _)| t);
+        let fusus = fusi.enter(rays.origin, rays.dir, t0, t1, from);
+        fusus.map(|(t, face)| (t, Element::Fusus(face))).or(core)
+    }
+
+    fn medulla_hit(
+        &self,
+        rays: &Rays,
+        t0: f64,
+        t1: f64,
+        from: Option<Element>,
+    ) -> Option<(f64, Element)> {
         if self.medulla.ratio <= 0.0 {
             return None;
         }
-        if self.medulla.homogeneous() {
+        if self.medulla.outlined() {
             // The outline is convex: a ray that has just left it does not come back.
             if from == Some(Element::Outline) {
                 return None;
             }
             let (t, _) = rays.unit.inside_circle(self.medulla.ratio)?;
-            return (t >= t0 && t < t1).then_some((t, None));
+            return (t >= t0 && t < t1).then_some((t, Element::Outline));
         }
         let from = match from {
             Some(Element::Void(index)) => Some(index),
             _ => None,
         };
         let (t, index) = self.medulla.enter_void(rays, t0, t1, from)?;
-        Some((t, Some(index)))
+        Some((t, Element::Void(index)))
+    }
+
+    /// Where a ray in a void, or in a piece of a homogeneous medulla, leaves it.
+    fn leave_void(
+        &self,
+        rays: &Rays,
+        region: Region,
+        from: Option<Element>,
+    ) -> Option<(f64, Element)> {
+        let void = match from {
+            Some(Element::Fusus(face)) => {
+                let hit = self.fusi.as_ref()?.leave(rays.origin, rays.dir, Some(face));
+                return hit.map(|(t, face)| (t, Element::Fusus(face)));
+            }
+            Some(Element::Void(index)) => Some(index),
+            _ => None,
+        };
+        if region == self.medulla.fill()
+            && let Some((t, index)) = self.medulla.leave_void(rays, void)
+        {
+            return Some((t, Element::Void(index)));
+        }
+        let (t, face) = self.fusi.as_ref()?.leave(rays.origin, rays.dir, None)?;
+        Some((t, Element::Fusus(face)))
     }
 
     /// Where a ray inside a homogeneous medulla leaves it.
@@ -341,10 +419,20 @@ impl Fiber {
         self.hit(rays, t, gradient, to, Part::Medulla, Element::Outline)
     }
 
-    fn void_hit(&self, rays: &Rays, t: f64, index: u32, to: Region) -> Hit {
+    fn void_hit(&self, rays: &Rays, t: f64, element: Element, to: Region) -> Hit {
         let point = rays.origin + t * rays.dir;
-        let gradient = self.medulla.void_gradient(&self.section, point, index);
-        self.hit(rays, t, gradient, to, Part::Void, Element::Void(index))
+        let gradient = match (element, &self.fusi) {
+            (Element::Fusus(face), Some(fusi)) => {
+                self.section.unit_gradient(fusi.gradient(face, point))
+            }
+            (Element::Void(index), _) => self.medulla.void_gradient(&self.section, point, index),
+            _ => DVec3::Z,
+        };
+        let part = match element {
+            Element::Void(_) if self.medulla.fill() == Region::Medulla => Part::Medulla,
+            _ => Part::Void,
+        };
+        self.hit(rays, t, gradient, to, part, element)
     }
 
     /// `gradient`: normal of the boundary in the unit-circle frame, of any length and sign.

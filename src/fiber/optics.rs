@@ -1,6 +1,7 @@
 //! What regions and boundaries do to light of one color.
 
-use crate::species::{Boundary, Filling, MedullaKind, Rgb, Structure};
+use super::medulla::Homogeneous;
+use crate::species::{Boundary, Filling, Rgb, Structure};
 
 /// What fills the space between boundaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,8 +105,10 @@ pub(super) struct OpticalParts {
 
 impl OpticalParts {
     /// Those of a structure; of its green channel where materials differ by color.
-    pub(super) fn new(structure: &Structure) -> Self {
-        let media = media(structure);
+    ///
+    /// * `medium`: what the medulla is made of where it has no voids.
+    pub(super) fn new(structure: &Structure, medium: Option<&Homogeneous>) -> Self {
+        let media = media(structure, medium);
         Self {
             media,
             eta: indices_between(&media),
@@ -124,15 +127,8 @@ fn indices_between(media: &[Medium; Region::COUNT]) -> [[f64; Region::COUNT]; Re
     media.map(|near| media.map(|far| far.ior / near.ior))
 }
 
-fn media(structure: &Structure) -> [Medium; Region::COUNT] {
+fn media(structure: &Structure, medium: Option<&Homogeneous>) -> [Medium; Region::COUNT] {
     let (materials, medulla) = (&structure.materials, &structure.medulla);
-    let (scattering_per_um, asymmetry) = match medulla.kind {
-        MedullaKind::Medium {
-            scattering_per_um,
-            asymmetry,
-        } => (scattering_per_um, asymmetry),
-        _ => (0.0, 0.0),
-    };
     let clear = |ior, pigment| Medium {
         ior,
         pigment,
@@ -141,12 +137,12 @@ fn media(structure: &Structure) -> [Medium; Region::COUNT] {
         asymmetry: 0.0,
     };
     let keratin = fill(clear(structure.ior, 1.0), &materials.cortex.filling);
-    let core = Medium {
-        pigment: medulla.pigment,
-        scattering_per_um,
-        asymmetry,
+    let core = medium.map_or(clear(keratin.ior, 1.0), |m| Medium {
+        pigment: m.pigment,
+        scattering_per_um: m.scattering_per_um,
+        asymmetry: m.asymmetry,
         ..clear(keratin.ior, 0.0)
-    };
+    });
     [
         clear(1.0, 0.0),
         fill(clear(structure.ior, 0.0), &materials.cuticle.filling),

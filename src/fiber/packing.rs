@@ -1,17 +1,9 @@
 //! Packing spheres of given sizes into the medulla until none overlap.
 
 use super::froth::Sphere;
-use super::section::Section;
 use crate::sampling::Rng;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
-
-/// Spheres of one period that do not overlap.
-#[derive(Clone, Debug)]
-pub(super) struct Packing {
-    pub(super) spheres: Vec<Sphere>,
-    pub(super) period: f64,
-}
 
 /// What to pack.
 #[derive(Clone, Copy, Debug)]
@@ -21,9 +13,12 @@ pub(super) struct Recipe {
     pub(super) radius_sigma: f64,
     /// Share of the medulla's volume.
     pub(super) air_fraction: f64,
-    /// Medulla's radius and the largest radius that spheres may reach, in units of the semi-axes.
-    pub(super) ratio: f64,
-    pub(super) reach: f64,
+    /// The medulla's volume in one period, cubic micrometers.
+    pub(super) volume: f64,
+    /// Semi-axes of the ellipse that spheres may reach, micrometers.
+    pub(super) semi: DVec2,
+    /// Depth of the dents in the wall, as a share of the radius.
+    pub(super) wobble: f64,
     pub(super) period: f64,
 }
 
@@ -31,6 +26,14 @@ pub(super) struct Recipe {
 const WALL_UM: f64 = 0.05;
 /// Rounds of pushing overlaps apart.
 const ROUNDS: usize = 3000;
+/// Pairs are listed that are as near as this share of the median radius, so that a list serves many
+/// rounds. Less makes lists often, more makes them long.
+const SKIN: f64 = 0.6;
+/// Share of the volume that may be off. Overlaps are left to shrinking when that costs twice as much:
+/// the last thousandths would take most of the rounds.
+const TOLERANCE: f64 = 0.0075;
+/// Distance of the dents in the wall of a froth, micrometers.
+const DENT_UM: f64 = 10.0;
 
 /// Volume of spheres.
 pub(super) fn volume(spheres: &[Sphere]) -> f64 {
@@ -41,25 +44,32 @@ pub(super) fn volume(spheres: &[Sphere]) -> f64 {
 impl Recipe {
     /// Draws sizes until their volume is the asked share, places them at random and pushes overlaps
     /// apart. `Err` is the share that could be reached.
-    pub(super) fn pack(&self, section: &Section, seed: u64) -> Result<Packing, f64> {
-        let medulla = PI * self.ratio * self.ratio * section.a * section.b * self.period;
-        let target = self.air_fraction * medulla;
-        let semi = DVec2::new(section.a, section.b) * self.reach;
-        let mut spheres = self.draw(target, semi, seed);
+    pub(super) fn pack(&self, seed: u64) -> Result<Vec<Sphere>, f64> {
+        let wall = Wall::new(self, seed);
+        let target = (1.0 + TOLERANCE) * self.air_fraction * self.volume;
+        let mut spheres = self.draw(target, self.semi, seed);
+        let skin = SKIN * self.radius_um;
+        let mut pairs = Vec::new();
+        // How far the two fastest spheres may have come together since the list was made.
+        let mut drift = f64::INFINITY;
         for _ in 0..ROUNDS {
-            if !self.push_apart(&mut spheres, semi) {
+            if drift >= skin {
+                pairs.clear();
+                self.for_each_pair(&spheres, skin, |i, j| pairs.push((i, j)));
+                drift = 0.0;
+            }
+            let (step, overlap) = self.push_apart(&mut spheres, &pairs, &wall);
+            if overlap <= 0.6 * TOLERANCE {
                 break;
             }
+            drift += 2.0 * step;
         }
-        self.shrink_to_fit(&mut spheres, semi);
-        let reached = volume(&spheres) / medulla;
+        self.shrink_to_fit(&mut spheres, &wall);
+        let reached = volume(&spheres) / self.volume;
         if reached < 0.98 * self.air_fraction {
             return Err(reached);
         }
-        Ok(Packing {
-            spheres,
-            period: self.period,
-        })
+        Ok(spheres)
     }
 
     /// Log-normal radii, cut to what fits, at random places; the last ones make up the volume.
@@ -93,30 +103,34 @@ impl Recipe {
         spheres
     }
 
-    /// One round: overlapping pairs step apart, spheres outside step in. `false` when none moved.
-    fn push_apart(&self, spheres: &mut [Sphere], semi: DVec2) -> bool {
-        let mut moved = false;
-        let mut pairs = Vec::new();
-        self.for_each_pair(spheres, |i, j| pairs.push((i, j)));
-        for (i, j) in pairs {
+    /// One round: overlapping pairs step apart, spheres outside step in. The longest way that one
+    /// moved, and the greatest overlap before, as a share of the radius.
+    fn push_apart(&self, spheres: &mut [Sphere], pairs: &[(u32, u32)], wall: &Wall) -> (f64, f64) {
+        let mut worst = 0.0f64;
+        let before: Vec<DVec3> = spheres.iter().map(|s| s.center).collect();
+        for &(i, j) in pairs {
+            let (i, j) = (i as usize, j as usize);
             let apart = self.apart(spheres[i].center, spheres[j].center);
-            let gap = apart.length() - spheres[i].radius - spheres[j].radius - WALL_UM;
-            if gap >= 0.0 {
+            let reach = spheres[i].radius + spheres[j].radius + WALL_UM;
+            if apart.length_squared() >= reach * reach {
                 continue;
             }
-            moved = true;
+            let gap = apart.length() - reach;
+            worst = worst.max((-gap - 0.5 * WALL_UM) / (reach - WALL_UM));
             // The small one yields; a little more than needed, or the end is approached for ever.
             let (a, b) = (spheres[i].radius.powi(2), spheres[j].radius.powi(2));
             let push = apart.try_normalize().unwrap_or(DVec3::Z) * (-0.6 * gap + 1e-3);
             spheres[i].center -= push * (2.0 * b / (a + b));
             spheres[j].center += push * (2.0 * a / (a + b));
         }
-        for sphere in spheres {
-            let inside = pull_inside(sphere, semi);
-            moved |= inside;
+        let mut longest = 0.0f64;
+        for (sphere, before) in spheres.iter_mut().zip(before) {
+            let over = pull_inside(sphere, wall.semi_at(sphere.center));
+            worst = worst.max(over / sphere.radius);
+            longest = longest.max(sphere.center.distance_squared(before));
             sphere.center.z = sphere.center.z.rem_euclid(self.period);
         }
-        moved
+        (longest.sqrt(), worst)
     }
 
     /// From `a` to the nearest image of `b`.
@@ -126,8 +140,8 @@ impl Recipe {
         d
     }
 
-    /// Pairs that overlap or nearly do.
-    fn for_each_pair(&self, spheres: &[Sphere], mut visit: impl FnMut(usize, usize)) {
+    /// Pairs that overlap or are nearer than `skin`.
+    fn for_each_pair(&self, spheres: &[Sphere], skin: f64, mut visit: impl FnMut(u32, u32)) {
         // Along z only: a sweep over spheres in order is enough for some thousand.
         let mut order: Vec<usize> = (0..spheres.len()).collect();
         order.sort_by(|&i, &j| {
@@ -143,29 +157,30 @@ impl Recipe {
                 let j = order[(k + step) % n];
                 let dz = spheres[j].center.z - spheres[i].center.z
                     + if k + step >= n { self.period } else { 0.0 };
-                if dz > spheres[i].radius + largest + WALL_UM {
+                if dz > spheres[i].radius + largest + WALL_UM + skin {
                     break;
                 }
-                let reach = spheres[i].radius + spheres[j].radius + WALL_UM;
+                let reach = spheres[i].radius + spheres[j].radius + WALL_UM + skin;
                 let d = self.apart(spheres[i].center, spheres[j].center);
                 if d.length_squared() < reach * reach {
-                    visit(i, j);
+                    visit(i as u32, j as u32);
                 }
             }
         }
     }
 
     /// Shrinks all spheres alike until none overlap or reach out.
-    fn shrink_to_fit(&self, spheres: &mut [Sphere], semi: DVec2) {
+    fn shrink_to_fit(&self, spheres: &mut [Sphere], wall: &Wall) {
         let mut factor = 1.0f64;
-        self.for_each_pair(spheres, |i, j| {
-            let apart = self.apart(spheres[i].center, spheres[j].center).length();
+        self.for_each_pair(spheres, 0.0, |i, j| {
+            let (p, q) = (&spheres[i as usize], &spheres[j as usize]);
+            let apart = self.apart(p.center, q.center).length();
             // Half the least wall is kept in any case.
-            let fits = (apart - 0.5 * WALL_UM) / (spheres[i].radius + spheres[j].radius);
+            let fits = (apart - 0.5 * WALL_UM) / (p.radius + q.radius);
             factor = factor.min(fits.max(0.0));
         });
         for sphere in spheres.iter() {
-            let outside = reach_outside(sphere, semi).max(0.0);
+            let outside = reach_outside(sphere, wall.semi_at(sphere.center)).max(0.0);
             factor = factor.min(1.0 - outside / sphere.radius);
         }
         if factor < 1.0 {
@@ -173,6 +188,52 @@ impl Recipe {
                 sphere.radius *= factor.max(0.0);
             }
         }
+    }
+}
+
+/// The wall of the tube: the ellipse with shallow dents.
+struct Wall {
+    semi: DVec2,
+    depth: f64,
+    /// Wave numbers round and along, and phases.
+    waves: [[f64; 3]; 6],
+}
+
+impl Wall {
+    fn new(recipe: &Recipe, seed: u64) -> Self {
+        let round = std::f64::consts::PI * (recipe.semi.x + recipe.semi.y) / DENT_UM;
+        let along = recipe.period / DENT_UM;
+        let mut rng = Rng::new(seed ^ 0x3a11_0000, 0);
+        let waves = [(); 6].map(|()| {
+            let m = (round * (2.0 * rng.uniform() - 1.0)).round();
+            let n = (along * (2.0 * rng.uniform() - 1.0)).round();
+            [
+                m,
+                n * std::f64::consts::TAU / recipe.period,
+                std::f64::consts::TAU * rng.uniform(),
+            ]
+        });
+        Self {
+            semi: recipe.semi,
+            depth: recipe.wobble,
+            waves,
+        }
+    }
+
+    /// Semi-axes of the wall beside a point.
+    fn semi_at(&self, p: DVec3) -> DVec2 {
+        if self.depth == 0.0 {
+            return self.semi;
+        }
+        let phi = (p.y * self.semi.x).atan2(p.x * self.semi.y);
+        let sum: f64 = self
+            .waves
+            .iter()
+            .map(|[m, n, phase]| (m * phi + n * p.z + phase).cos())
+            .sum();
+        // The sum of six waves has a deviation of 1.7; dents point inward only.
+        let dent = (0.5 + 0.25 * sum).clamp(0.0, 1.0);
+        self.semi * (1.0 - self.depth * dent)
     }
 }
 
@@ -185,18 +246,18 @@ fn reach_outside(sphere: &Sphere, semi: DVec2) -> f64 {
     sphere.radius - distance
 }
 
-/// Moves a sphere that reaches out back in. Whether it had to.
-fn pull_inside(sphere: &mut Sphere, semi: DVec2) -> bool {
+/// Moves a sphere that reaches out back in. How far it reached.
+fn pull_inside(sphere: &mut Sphere, semi: DVec2) -> f64 {
     let over = reach_outside(sphere, semi);
     if over <= 0.0 {
-        return false;
+        return 0.0;
     }
     let c = sphere.center.truncate();
     let nearest = nearest_on_ellipse(c, semi);
     let normal = (nearest / (semi * semi)).normalize();
     let c = nearest - normal * (sphere.radius + 1e-3);
     sphere.center = c.extend(sphere.center.z);
-    true
+    over
 }
 
 /// The point of an ellipse nearest to `p`, by iteration over the evolute (Chatfield 2017): five

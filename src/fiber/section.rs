@@ -82,6 +82,12 @@ impl Section {
         DVec3::new(p.x * self.inverse[0], p.y * self.inverse[1], p.z)
     }
 
+    /// The gradient in the unit-circle frame that belongs to one in micrometers.
+    #[inline]
+    pub(super) fn unit_gradient(&self, gradient: DVec3) -> DVec3 {
+        DVec3::new(gradient.x * self.a, gradient.y * self.b, gradient.z)
+    }
+
     /// The unit normal that belongs to a gradient in the unit-circle frame, turned against `dir`.
     #[inline]
     pub(super) fn normal_against(&self, gradient: DVec3, dir: DVec3) -> DVec3 {

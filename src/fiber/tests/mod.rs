@@ -1,5 +1,6 @@
 //! Structures like those of real animals, and what every fiber must keep to.
 
+mod kinds;
 mod scales;
 mod shapes;
 mod walk;
@@ -108,14 +109,17 @@ pub(super) fn flat_seal() -> Structure {
 }
 
 pub(super) fn all() -> Vec<(&'static str, Fiber)> {
-    [
+    let mut structures = vec![
         ("glass", glass()),
         ("fox guard", fox_guard()),
         ("bear guard", bear_guard()),
         ("mink under", mink_under()),
         ("chinchilla", chinchilla()),
         ("flat seal", flat_seal()),
-    ]
-    .map(|(name, s)| (name, Fiber::build(&s, 7).unwrap()))
-    .into()
+    ];
+    structures.extend(kinds::structures());
+    structures
+        .into_iter()
+        .map(|(name, s)| (name, Fiber::build(&s, 7).unwrap()))
+        .collect()
 }

@@ -117,8 +117,11 @@ fn chords_between_the_voids_follow_cauchy() {
         let mut rng = Rng::new(21, path);
         // Uniform on the outline with a cosine law about its normal: uniform lines.
         let (u, v) = (rng.uniform(), std::f64::consts::TAU * rng.uniform());
+        let turn = glam::DMat3::from_rotation_z(2.0 * pi * rng.uniform());
         let dir = DVec3::new(-(1.0 - u).sqrt(), u.sqrt() * v.cos(), u.sqrt() * v.sin());
-        let mut p = DVec3::new(radius, 0.0, period * rng.uniform()) + dir * 1e-9;
+        let dir = turn * dir;
+        let at = turn * DVec3::new(radius, 0.0, period * rng.uniform());
+        let mut p = at + dir * 1e-9;
         let (mut region, mut from) = (fiber.region_at(p), None);
         while region != Region::Outside {
             let hit = fiber.next_hit(p, dir, region, from).unwrap();

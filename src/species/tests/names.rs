@@ -33,6 +33,8 @@ fn a_distinctive_word_is_enough_and_several_owners_are_named() {
         assert_eq!(found(name).unwrap_err(), owners);
     }
     assert_eq!(found("neogale").as_deref(), Ok("mink"));
+    let american = found("american").unwrap_err();
+    assert!(american.contains("mink or "), "{american}");
     assert!(found("hair of").is_err());
     assert!(found("").is_err() && found("-").is_err());
 }

@@ -1,0 +1,416 @@
+//! Voids of any shape: unions of convex bodies, some with solid islands inside, in a grid of cells.
+//!
+//! A convex body is what some half-spaces and quadrics have in common, so that a ray is in it along
+//! one interval, known exactly. Bodies of voids may overlap: a ray that leaves one goes on in the
+//! next until none holds it. Where a ray is follows from the element it starts on, never from the
+//! sign of a distance there, so that rounding can move a hit but not lose one.
+
+use super::grid::Grid;
+use super::section::nearest_period;
+use glam::{DMat3, DVec3};
+use std::ops::Range;
+
+/// The half-space `normal . p <= offset`, seen from a body's center.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane {
+    pub(super) normal: DVec3,
+    pub(super) offset: f64,
+}
+
+/// The points with `|map (p - center)| <= 1`, seen from a body's center: a ball, an ellipsoid, or a
+/// cylinder where the map forgets a direction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Quadric {
+    pub(super) center: DVec3,
+    pub(super) map: DMat3,
+}
+
+/// A convex body to be put into the store. At least one face on every side, or it has no end.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Convex {
+    pub(super) center: DVec3,
+    /// Half-widths of a box about the center that holds it.
+    pub(super) half: DVec3,
+    pub(super) planes: Vec<Plane>,
+    pub(super) quadrics: Vec<Quadric>,
+    /// Keratin inside a void; it touches neither the void's boundary nor another island.
+    pub(super) island: bool,
+}
+
+/// A convex body in the store.
+#[derive(Clone, Debug)]
+struct Body {
+    center: DVec3,
+    /// Square of the radius of a ball about the center that holds it.
+    reach2: f64,
+    planes: Range<u32>,
+    quadrics: Range<u32>,
+    island: bool,
+}
+
+/// Where a ray is in a body, and through which faces it comes and goes.
+#[derive(Clone, Copy, Debug)]
+struct Chord {
+    enter: f64,
+    leave: f64,
+    enter_face: u32,
+    leave_face: u32,
+}
+
+/// The bodies of one period. A face is known by its place among all planes, then among all quadrics.
+#[derive(Clone, Debug)]
+pub(super) struct Bodies {
+    period: f64,
+    bodies: Vec<Body>,
+    planes: Vec<Plane>,
+    quadrics: Vec<Quadric>,
+    /// The bodies that planes and quadrics belong to.
+    owners: [Vec<u32>; 2],
+    grid: Grid,
+    /// Whether some bodies overlap, and whether some are islands.
+    unions: bool,
+    islands: bool,
+}
+
+/// Mark of a quadric in the number of a face.
+const QUADRIC: u32 = 1 << 31;
+/// Hops shorter than this are none: where two bodies' faces cross, micrometers.
+const LEAST_UM: f64 = 1e-9;
+/// Bodies that a ray passes without leaving their union, at most.
+const MOST_LINKS: u32 = 10_000;
+
+impl Quadric {
+    /// An ellipsoid with these semi-axes along the frame's; an infinite one makes a cylinder.
+    pub(super) fn ellipsoid(center: DVec3, semi: DVec3) -> Self {
+        Self {
+            center,
+            map: DMat3::from_diagonal(1.0 / semi),
+        }
+    }
+}
+
+/// Whether a point seen from a body's center is inside.
+fn holds(p: DVec3, planes: &[Plane], quadrics: &[Quadric]) -> bool {
+    planes.iter().all(|f| f.normal.dot(p) < f.offset)
+        && quadrics
+            .iter()
+            .all(|q| (q.map * (p - q.center)).length_squared() < 1.0)
+}
+
+impl Bodies {
+    /// * `half`: half-widths across of a box about the axis that holds all bodies.
+    /// * `unions`: whether bodies overlap.
+    ///
+    /// Every body must be shorter than half the period, so that one image is the nearest.
+    pub(super) fn new(convex: Vec<Convex>, period: f64, half: [f64; 2], unions: bool) -> Self {
+        let mean = convex.iter().map(|c| c.half.element_sum()).sum::<f64>()
+            / (3.0 * convex.len().max(1) as f64);
+        let boxes: Vec<(DVec3, DVec3)> = convex
+            .iter()
+            .map(|c| (c.center - c.half, c.center + c.half))
+            .collect();
+        let size = (1.5 * mean).clamp(0.2, 0.25 * period);
+        let grid = Grid::new(half, period, size, &boxes, |index, lo, hi| {
+            convex[index].may_touch(lo, hi)
+        });
+        let mut store = Self {
+            period,
+            islands: convex.iter().any(|c| c.island),
+            bodies: Vec::with_capacity(convex.len()),
+            planes: Vec::new(),
+            quadrics: Vec::new(),
+            owners: [Vec::new(), Vec::new()],
+            grid,
+            unions,
+        };
+        for (index, c) in convex.into_iter().enumerate() {
+            let (p, q) = (store.planes.len() as u32, store.quadrics.len() as u32);
+            store.planes.extend(&c.planes);
+            store.quadrics.extend(&c.quadrics);
+            store.owners[0].resize(store.planes.len(), index as u32);
+            store.owners[1].resize(store.quadrics.len(), index as u32);
+            store.bodies.push(Body {
+                center: c.center,
+                reach2: c.half.length_squared(),
+                planes: p..store.planes.len() as u32,
+                quadrics: q..store.quadrics.len() as u32,
+                island: c.island,
+            });
+        }
+        store
+    }
+
+    /// Number of bodies.
+    pub(super) fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    #[inline]
+    fn owner(&self, face: u32) -> u32 {
+        self.owners[(face >> 31) as usize][(face & !QUADRIC) as usize]
+    }
+
+    #[inline]
+    fn planes_of(&self, body: &Body) -> &[Plane] {
+        &self.planes[body.planes.start as usize..body.planes.end as usize]
+    }
+
+    #[inline]
+    fn quadrics_of(&self, body: &Body) -> &[Quadric] {
+        &self.quadrics[body.quadrics.start as usize..body.quadrics.end as usize]
+    }
+
+    /// Center of the image of a body that is nearest in z.
+    #[inline]
+    fn center_near(&self, body: &Body, z: f64) -> DVec3 {
+        let c = body.center;
+        DVec3::new(c.x, c.y, c.z + nearest_period(z - c.z, self.period))
+    }
+
+    /// First void that a ray in keratin enters in `t0..t1`, by the face, or the face of the island that
+    /// it leaves.
+    ///
+    /// * `from`: the face that the ray starts on.
+    pub(super) fn enter(
+        &self,
+        origin: DVec3,
+        dir: DVec3,
+        t0: f64,
+        t1: f64,
+        from: Option<u32>,
+    ) -> Option<(f64, u32)> {
+        let start = from.map(|face| self.owner(face));
+        if self.islands {
+            let within = match start {
+                Some(index) => self.bodies[index as usize].island.then_some(index),
+                None => self.find(origin, true),
+            };
+            if let Some(index) = within {
+                return match self.chord(index, origin, dir, origin.z, from) {
+                    Some(chord) => Some((chord.leave.max(0.0), chord.leave_face)),
+                    // A ray that only touches leaves where it is.
+                    None => from.map(|face| (0.0, face)),
+                };
+            }
+        }
+        self.grid.walk(origin, dir, t0, t1, |members, z| {
+            let mut best: Option<(f64, u32)> = None;
+            for &index in members {
+                // A convex body that has been left is not met again.
+                if Some(index) == start && self.is_here(index, origin.z, z)
+                    || self.bodies[index as usize].island
+                {
+                    continue;
+                }
+                let Some(chord) = self.chord(index, origin, dir, z, None) else {
+                    continue;
+                };
+                let t = chord.enter.max(t0);
+                if t < t1 && chord.leave > t + LEAST_UM && best.is_none_or(|(b, _)| t < b) {
+                    best = Some((t, chord.enter_face));
+                }
+            }
+            best
+        })
+    }
+
+    /// Where a ray in a void leaves it, and the face.
+    ///
+    /// * `from`: the face that the ray starts on.
+    pub(super) fn leave(&self, origin: DVec3, dir: DVec3, from: Option<u32>) -> Option<(f64, u32)> {
+        let start = from.map(|face| self.owner(face));
+        let (first, on) = match start {
+            Some(index) if !self.bodies[index as usize].island => (index, from),
+            _ => (self.find(origin, false)?, None),
+        };
+        let mut end = match self.chord(first, origin, dir, origin.z, on) {
+            Some(chord) => (chord.leave.max(0.0), chord.leave_face),
+            // A ray that only touches leaves where it is.
+            None => (0.0, on?),
+        };
+        if self.unions {
+            end = self.follow(origin, dir, end);
+        }
+        if self.islands {
+            let island = self.grid.walk(origin, dir, 0.0, end.0, |members, z| {
+                let mut best: Option<(f64, u32)> = None;
+                for &index in members {
+                    if Some(index) == start && self.is_here(index, origin.z, z)
+                        || !self.bodies[index as usize].island
+                    {
+                        continue;
+                    }
+                    if let Some(chord) = self.chord(index, origin, dir, z, None)
+                        && chord.leave > 0.0
+                        && best.is_none_or(|(b, _)| chord.enter < b)
+                    {
+                        best = Some((chord.enter.max(0.0), chord.enter_face));
+                    }
+                }
+                best
+            });
+            return island.filter(|hit| hit.0 < end.0).or(Some(end));
+        }
+        Some(end)
+    }
+
+    /// From the end of a chord through all bodies that hold the ray there.
+    fn follow(&self, origin: DVec3, dir: DVec3, mut end: (f64, u32)) -> (f64, u32) {
+        for _ in 0..MOST_LINKS {
+            let p = origin + end.0 * dir;
+            let (mut next, last) = (end, self.owner(end.1));
+            for &index in self.grid.around(p) {
+                if self.bodies[index as usize].island || index == last {
+                    continue;
+                }
+                if let Some(chord) = self.chord(index, origin, dir, p.z, None)
+                    && chord.enter <= end.0
+                    && chord.leave > next.0 + LEAST_UM
+                {
+                    next = (chord.leave, chord.leave_face);
+                }
+            }
+            if next == end {
+                break;
+            }
+            end = next;
+        }
+        end
+    }
+
+    /// Whether the images of a body nearest to two places are the same.
+    fn is_here(&self, index: u32, z0: f64, z1: f64) -> bool {
+        let body = &self.bodies[index as usize];
+        self.center_near(body, z0).z == self.center_near(body, z1).z
+    }
+
+    /// The void body that holds a point.
+    pub(super) fn at(&self, p: DVec3) -> Option<u32> {
+        if self.islands && self.find(p, true).is_some() {
+            return None;
+        }
+        self.find(p, false)
+    }
+
+    fn find(&self, p: DVec3, island: bool) -> Option<u32> {
+        self.grid.around(p).iter().copied().find(|&index| {
+            let body = &self.bodies[index as usize];
+            let q = p - self.center_near(body, p.z);
+            body.island == island && holds(q, self.planes_of(body), self.quadrics_of(body))
+        })
+    }
+
+    /// Outward normal of a face at a point, of any length.
+    pub(super) fn gradient(&self, face: u32, p: DVec3) -> DVec3 {
+        let index = (face & !QUADRIC) as usize;
+        if face & QUADRIC == 0 {
+            return self.planes[index].normal;
+        }
+        let body = &self.bodies[self.owner(face) as usize];
+        let quadric = &self.quadrics[index];
+        let q = p - self.center_near(body, p.z) - quadric.center;
+        quadric.map.transpose() * (quadric.map * q)
+    }
+
+    /// Where a ray from a body's center leaves it.
+    pub(super) fn boundary(&self, index: u32, dir: DVec3) -> DVec3 {
+        let center = self.bodies[index as usize].center;
+        let chord = self.chord(index, center, dir, center.z, None);
+        center + chord.map_or(0.0, |c| c.leave.max(0.0)) * dir
+    }
+
+    /// Where a ray is in the image of a body nearest to `z`.
+    ///
+    /// * `on`: the face that the ray starts on; its root there is known to be 0.
+    fn chord(
+        &self,
+        index: u32,
+        origin: DVec3,
+        dir: DVec3,
+        z: f64,
+        on: Option<u32>,
+    ) -> Option<Chord> {
+        let body = &self.bodies[index as usize];
+        let o = origin - self.center_near(body, z);
+        if (o - o.dot(dir) * dir).length_squared() > body.reach2 {
+            return None;
+        }
+        let mut chord = Chord {
+            enter: f64::NEG_INFINITY,
+            leave: f64::INFINITY,
+            enter_face: body.planes.start,
+            leave_face: body.planes.start,
+        };
+        for (quadric, face) in self.quadrics_of(body).iter().zip(body.quadrics.clone()) {
+            let face = face | QUADRIC;
+            let (enter, leave) = quadric.inside(o, dir, on == Some(face))?;
+            chord.cut(enter, leave, face);
+        }
+        for (plane, face) in self.planes_of(body).iter().zip(body.planes.clone()) {
+            let rate = plane.normal.dot(dir);
+            let gap = if on == Some(face) {
+                0.0
+            } else {
+                plane.offset - plane.normal.dot(o)
+            };
+            if rate > 0.0 {
+                chord.cut(f64::NEG_INFINITY, gap / rate, face);
+            } else if rate < 0.0 {
+                chord.cut(gap / rate, f64::INFINITY, face);
+            } else if gap < 0.0 {
+                return None;
+            }
+        }
+        (chord.enter < chord.leave).then_some(chord)
+    }
+}
+
+impl Chord {
+    #[inline]
+    fn cut(&mut self, enter: f64, leave: f64, face: u32) {
+        if enter > self.enter {
+            (self.enter, self.enter_face) = (enter, face);
+        }
+        if leave < self.leave {
+            (self.leave, self.leave_face) = (leave, face);
+        }
+    }
+}
+
+impl Quadric {
+    /// Where a ray is inside; `on` if it starts on the surface.
+    #[inline]
+    fn inside(&self, o: DVec3, dir: DVec3, on: bool) -> Option<(f64, f64)> {
+        let (q, e) = (self.map * (o - self.center), self.map * dir);
+        let (a, b) = (e.length_squared(), q.dot(e));
+        if on {
+            // A ray along a cylinder that it starts on stays on it.
+            let other = if a > 1e-30 {
+                -2.0 * b / a
+            } else {
+                f64::INFINITY
+            };
+            return Some((other.min(0.0), other.max(0.0)));
+        }
+        if a < 1e-30 {
+            return (q.length_squared() < 1.0).then_some((f64::NEG_INFINITY, f64::INFINITY));
+        }
+        // The foot of the center on the ray keeps the digits that b^2 - a c loses.
+        let foot = -b / a;
+        let miss = 1.0 - (q + foot * e).length_squared();
+        (miss > 0.0).then(|| {
+            let half = (miss / a).sqrt();
+            (foot - half, foot + half)
+        })
+    }
+}
+
+impl Convex {
+    /// Whether it may reach into a box: not if the box lies beyond one of its planes.
+    fn may_touch(&self, lo: DVec3, hi: DVec3) -> bool {
+        let (middle, half) = (0.5 * (lo + hi) - self.center, 0.5 * (hi - lo));
+        self.planes
+            .iter()
+            .all(|f| f.normal.dot(middle) - f.normal.abs().dot(half) <= f.offset + 1e-9)
+    }
+}
