@@ -21,8 +21,8 @@ pub(super) struct Args {
     /// Hair class; the first of the species if not given.
     #[arg(long)]
     class: Option<String>,
-    /// Position along the hair, 0 root to 1 tip: the nearest station is baked. The thickest part
-    /// (the last station) if not given.
+    /// Position along the hair, 0 root to 1 tip: the nearest station is baked. The thickest if not
+    /// given.
     #[arg(long)]
     station: Option<f64>,
     /// Table frame: `cone` follows the specular cone, `paper` is the paper to the letter.
@@ -145,9 +145,12 @@ pub(super) fn find_class<'a>(
         })
 }
 
-/// The station nearest to a position along the hair, or the last one.
+/// The station nearest to a position along the hair, or the thickest one.
 pub(super) fn find_station(class: &HairClass, at: Option<f64>) -> Result<&Station, Failure> {
-    let at = at.unwrap_or(1.0);
+    let none = || Failure::new(Blame::Internal, "a hair class without stations");
+    let Some(at) = at else {
+        return class.widest().ok_or_else(none);
+    };
     if !(0.0..=1.0).contains(&at) {
         let message = format!("--station is {at}, must be 0 (root) to 1 (tip)");
         return Err(Failure::new(Blame::Input, message));
@@ -157,7 +160,7 @@ pub(super) fn find_station(class: &HairClass, at: Option<f64>) -> Result<&Statio
         .stations
         .iter()
         .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    nearest.ok_or_else(|| Failure::new(Blame::Internal, "a hair class without stations"))
+    nearest.ok_or_else(none)
 }
 
 /// Energy and loss, so that a bad bake is seen at once.

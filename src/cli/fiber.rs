@@ -28,8 +28,8 @@ pub(super) struct Args {
     /// Hair class; the first of the species if not given.
     #[arg(long)]
     class: Option<String>,
-    /// Position along the hair, 0 root to 1 tip: the nearest station is built. The thickest part
-    /// (the last station) if not given.
+    /// Position along the hair, 0 root to 1 tip: the nearest station is built. The thickest if not
+    /// given.
     #[arg(long)]
     station: Option<f64>,
     /// Override a field of the species. May repeat.

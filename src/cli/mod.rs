@@ -13,7 +13,6 @@ mod render;
 mod schema;
 mod signals;
 mod species;
-mod species_report;
 mod table;
 
 pub use console::Console;

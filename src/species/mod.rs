@@ -16,7 +16,9 @@ mod origin;
 mod overrides;
 mod schema;
 mod shape;
+mod start;
 mod tree;
+mod words;
 
 pub use error::{Place, Problem, SpeciesError, SpeciesErrors};
 pub use library::{LIBRARY, ids};
@@ -24,6 +26,7 @@ pub use materials::{Boundary, Filling, Material, Materials, Rgb};
 pub use model::*;
 pub use origin::{Cited, Origin, Origins, Reference};
 pub use schema::json_schema;
+pub use start::{is_id, start_from};
 
 use crate::io::{FileError, read_bounded};
 use error::Problems;

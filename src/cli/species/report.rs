@@ -1,6 +1,6 @@
 //! Refused species files on the terminal: each problem under the line of the file it stands in.
 
-use super::Failure;
+use crate::cli::Failure;
 use crate::species::{Place, Problem, SpeciesError, SpeciesErrors};
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::fmt;
