@@ -8,13 +8,13 @@ use vair::fiber::Fiber;
 use vair::math::frame;
 use vair::species::{Cuticle, CuticlePattern, Medulla, MedullaKind, Structure};
 
-fn scaled(pattern: CuticlePattern, height_um: f64, medulla: Medulla) -> Structure {
+fn scaled(pattern: &str, height_um: f64, medulla: Medulla) -> Structure {
     Structure {
         diameter_um: 80.0,
         aspect: 1.0,
         ior: 1.55,
         cuticle: Cuticle {
-            pattern,
+            pattern: CuticlePattern::built_in(pattern).unwrap(),
             pitch_um: 9.0,
             height_um,
             around: 6,
@@ -72,7 +72,7 @@ fn shift(flights: &[Flight], keep: impl Fn(&Flight, f64) -> bool) -> (f64, f64) 
 /// tilt toward the tip, to first order and up to risers and shadowing.
 #[test]
 fn tilted_scales_move_r_to_the_root_and_trt_to_the_tip() {
-    let structure = scaled(CuticlePattern::Coronal, 0.47, no_medulla());
+    let structure = scaled("coronal", 0.47, no_medulla());
     let tilt = (0.47f64 / 9.0).atan().to_degrees();
     let fiber = Fiber::build(&structure, 1).unwrap();
     let flights = flights(&fiber, (-0.02, 0.02), 1_000_000);
@@ -112,11 +112,8 @@ fn explicit_geometry_is_reciprocal() {
         ..Default::default()
     };
     for (name, structure) in [
-        ("scales", scaled(CuticlePattern::Coronal, 0.5, no_medulla())),
-        (
-            "mosaic and ladder",
-            scaled(CuticlePattern::Mosaic, 0.5, ladder),
-        ),
+        ("scales", scaled("coronal", 0.5, no_medulla())),
+        ("mosaic and ladder", scaled("mosaic", 0.5, ladder)),
     ] {
         let fiber = Fiber::build(&structure, 1).unwrap();
         const N: usize = 10;

@@ -224,7 +224,7 @@ fn summary(
         "bounding_radius_um": fiber.bounding_radius_um(),
         "semi_axes_um": fiber.semi_axes_um(),
         "cuticle": {
-            "pattern": s.cuticle.pattern,
+            "pattern": s.cuticle.pattern.name(),
             "tilt_deg": tilt_deg(s),
             "sectors": fiber.sector_count(),
             "strips": fiber.strip_count(),

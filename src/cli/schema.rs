@@ -8,7 +8,8 @@ use std::io::Write as _;
 /// Prints the JSON Schema of a file format.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
-  vair schema species > species.schema.json")]
+  vair schema species > species.schema.json
+  vair schema pattern > pattern.schema.json")]
 pub(super) struct Args {
     /// Which files.
     #[arg(value_enum, default_value_t = Format::Species)]
@@ -19,6 +20,8 @@ pub(super) struct Args {
 enum Format {
     /// Species files.
     Species,
+    /// Recipes of scale patterns.
+    Pattern,
 }
 
 /// Runs the command.
@@ -28,6 +31,7 @@ enum Format {
 pub(super) fn run(args: &Args, _console: &Console) -> Result<(), Failure> {
     let schema = match args.format {
         Format::Species => species::json_schema(),
+        Format::Pattern => species::pattern_schema(),
     };
     writeln!(std::io::stdout().lock(), "{schema:#}")
         .map_err(|e| Failure::new(Blame::Environment, format!("cannot write to stdout: {e}")))

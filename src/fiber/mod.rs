@@ -5,7 +5,6 @@
 
 mod bodies;
 mod cortex;
-mod covering;
 mod crossing;
 mod error;
 mod froth;
@@ -109,7 +108,7 @@ impl Fiber {
         let flat = cuticle.height_um <= 0.0;
         let lines = section.lines(section.line_count());
         let pattern = (!flat)
-            .then(|| Pattern::new(cuticle, &lines, seed))
+            .then(|| Pattern::new(cuticle, &lines, section.circumference(), seed))
             .flatten();
         let (surface, period_um) = match &pattern {
             None => (Surface::Smooth, Medulla::period_um(structure, None)),

@@ -328,12 +328,12 @@ fn join(pattern: &Pattern, lines: &[Line], i: usize, strips: &mut Vec<Strip>) {
                 at[side] += 1;
             }
         }
-        let t = pattern.tiles[tile as usize];
+        let tiles = pair.map(|l| (pattern.tile_on(tile, l), lines[l].support_um));
         strips.push(Strip {
             begin,
             end,
-            height: pair.map(|l| t.height_um / lines[l].support_um),
-            slope: pair.map(|l| t.slope / lines[l].support_um),
+            height: tiles.map(|((height_um, _), support_um)| height_um / support_um),
+            slope: tiles.map(|((_, slope), support_um)| slope / support_um),
         });
     }
 }

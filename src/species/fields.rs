@@ -247,7 +247,7 @@ const SCALES: &[&str] = &[
     "lifted",
 ];
 
-/// Scale patterns, in the order of [`super::CuticlePattern`].
+/// Scale patterns: `smooth`, then those of [`super::PATTERN_LIBRARY`].
 pub(crate) const PATTERNS: &[Choice] = &[
     Choice {
         name: "smooth",
@@ -377,8 +377,9 @@ static CUTICLE: Shape = Shape {
     fields: &[
         Field::layered(
             "pattern",
-            Kind::Choice(PATTERNS),
-            "Shape and arrangement of the scales.",
+            Kind::ChoiceOrFile(PATTERNS),
+            "Shape and arrangement of the scales: a built-in pattern, or the path of a recipe (.toml) \
+             relative to this file.",
         ),
         Field::layered(
             "pitch_um",

@@ -14,6 +14,7 @@ mod materials;
 pub mod model;
 mod origin;
 mod overrides;
+mod pattern;
 mod schema;
 mod shape;
 mod start;
@@ -25,7 +26,11 @@ pub use library::{LIBRARY, ids};
 pub use materials::{Boundary, Filling, Material, Materials, Rgb};
 pub use model::*;
 pub use origin::{Cited, Origin, Origins, Reference};
-pub use schema::json_schema;
+pub use pattern::{
+    CuticlePattern, CyclesPer, MarginTerm, MarginWave, PATTERN_LIBRARY, PatternLayout,
+    PatternRecipe, RowPhase, pattern_names,
+};
+pub use schema::{json_schema, pattern_schema};
 pub use start::{is_id, start_from};
 
 use crate::io::{FileError, read_bounded};
@@ -75,7 +80,8 @@ pub fn load_with_origins(
 
 /// Reads the text of a species file.
 ///
-/// * `id`: id of the species; `file`: name of the file for messages.
+/// * `id`: id of the species; `file`: name of the file for messages; its folder is where relative
+///   paths in it begin.
 ///
 /// # Errors
 /// Everything that is wrong with the text and the overrides.
@@ -100,7 +106,8 @@ pub fn parse(
     overrides::apply(&mut root, overrides, &mut problems);
     let (checked, origins) = check::check(&root, &mut problems);
     let full_text = format!("{text}{}", overrides::as_comments(overrides));
-    match build::build(&checked, id, full_text, &mut problems) {
+    let folder = Path::new(file).parent().unwrap_or(Path::new(""));
+    match build::build(&checked, id, full_text, folder, &mut problems) {
         Some(species) if problems.is_empty() => Ok((species, origins)),
         _ => Err(refuse(problems)),
     }

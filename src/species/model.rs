@@ -2,6 +2,7 @@
 //! meet a bad number. Lengths carry their unit in the name, angles are degrees as in the files.
 
 use super::materials::Materials;
+use super::pattern::CuticlePattern;
 use serde::Serialize;
 
 /// One animal.
@@ -119,6 +120,7 @@ pub struct Cortex {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Cuticle {
     /// Shape and arrangement of the scales.
+    #[serde(flatten)]
     pub pattern: CuticlePattern,
     /// Axial distance between scale margins, micrometers.
     pub pitch_um: f64,
@@ -139,48 +141,6 @@ pub struct Cuticle {
     /// GGX roughness (alpha) of the risers at the free edges; they are below the wavelength in size
     /// and scatter rather than mirror.
     pub riser_roughness: f64,
-}
-
-/// The scale patterns of the microscopy literature.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum CuticlePattern {
-    /// No scales: a bare cylinder.
-    Smooth,
-    /// One scale wraps the shaft; a stack of paper cups.
-    Coronal,
-    /// Coronal with a toothed rim.
-    CoronalDentate,
-    /// Short wide petals.
-    BroadPetal,
-    /// Overlapping rhombic petals in alternating rows.
-    DiamondPetal,
-    /// Long pointed petals.
-    LanceolatePetal,
-    /// Four fins a level, the next level turned by half a fin.
-    OtterFin,
-    /// A comb of long narrow teeth.
-    Pectinate,
-    /// Jittered polygonal tiles.
-    Mosaic,
-    /// Mosaic with rippled outlines.
-    MosaicRippled,
-    /// Equal waves in every row.
-    RegularWave,
-    /// Wavy margins that change from row to row.
-    IrregularWave,
-    /// Near rows with small irregular ripples.
-    CloseWave,
-    /// Two V a turn.
-    SingleChevron,
-    /// Four V a turn.
-    DoubleChevron,
-    /// Human: irregular margins without a wave.
-    HumanImbricate,
-    /// Deep ragged margins.
-    TornPaper,
-    /// Wide low polygons.
-    SquatPolygon,
 }
 
 /// Fine shape of a scale's free edge, added to what the pattern gives.
@@ -356,32 +316,6 @@ impl Default for Medulla {
             continuity: Continuity::default(),
             void_ior: 1.0003,
             pigment: 1.0,
-        }
-    }
-}
-
-impl CuticlePattern {
-    /// As files write it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Smooth => "smooth",
-            Self::Coronal => "coronal",
-            Self::CoronalDentate => "coronal-dentate",
-            Self::BroadPetal => "broad-petal",
-            Self::DiamondPetal => "diamond-petal",
-            Self::LanceolatePetal => "lanceolate-petal",
-            Self::OtterFin => "otter-fin",
-            Self::Pectinate => "pectinate",
-            Self::Mosaic => "mosaic",
-            Self::MosaicRippled => "mosaic-rippled",
-            Self::RegularWave => "regular-wave",
-            Self::IrregularWave => "irregular-wave",
-            Self::CloseWave => "close-wave",
-            Self::SingleChevron => "single-chevron",
-            Self::DoubleChevron => "double-chevron",
-            Self::HumanImbricate => "human-imbricate",
-            Self::TornPaper => "torn-paper",
-            Self::SquatPolygon => "squat-polygon",
         }
     }
 }

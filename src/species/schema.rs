@@ -2,7 +2,8 @@
 //! complete and check with it; the rules that join several values are the reader's alone.
 
 use super::fields;
-use super::shape::{Field, Kind, Presence, Range, Shape};
+use super::pattern::PATTERN;
+use super::shape::{Choice, Field, Kind, Presence, Range, Shape};
 use serde_json::{Map, Value, json};
 
 /// The schema (draft 2020-12).
@@ -14,6 +15,17 @@ pub fn json_schema() -> Value {
     root["title"] = json!("Vair species");
     // Every key that is not of the root is a hair class.
     root["additionalProperties"] = class;
+    definitions.insert("source".to_owned(), source());
+    root["$defs"] = Value::Object(definitions);
+    root
+}
+
+/// The schema of pattern recipes (draft 2020-12).
+pub fn pattern_schema() -> Value {
+    let mut definitions = Map::new();
+    let mut root = table(&PATTERN, &mut definitions);
+    root["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+    root["title"] = json!("Vair scale pattern");
     definitions.insert("source".to_owned(), source());
     root["$defs"] = Value::Object(definitions);
     root
@@ -69,10 +81,10 @@ fn property(field: &Field, definitions: &mut Map<String, Value>) -> Value {
             "maxItems": count,
             "items": number("number", *range),
         })),
-        Kind::Choice(choices) => {
-            let of = |name: &str, doc: &str| json!({ "const": name, "description": doc });
-            json!({ "oneOf": choices.iter().map(|c| of(c.name, c.doc)).collect::<Vec<_>>() })
-        }
+        Kind::Choice(choices) => one_of(choices),
+        Kind::ChoiceOrFile(choices) => json!({
+            "anyOf": [one_of(choices), { "type": "string", "pattern": "\\.toml$" }],
+        }),
         Kind::Table(shape) => reference(shape, definitions),
         Kind::Tables(shape, most) => json!({
             "type": "array",
@@ -83,6 +95,11 @@ fn property(field: &Field, definitions: &mut Map<String, Value>) -> Value {
     };
     value["description"] = json!(field.doc);
     value
+}
+
+fn one_of(choices: &[Choice]) -> Value {
+    let of = |c: &Choice| json!({ "const": c.name, "description": c.doc });
+    json!({ "oneOf": choices.iter().map(of).collect::<Vec<_>>() })
 }
 
 fn reference(shape: &Shape, definitions: &mut Map<String, Value>) -> Value {
@@ -142,5 +159,12 @@ mod tests {
     fn committed_file_is_the_schema() {
         let committed = include_str!("../../schemas/species.schema.json");
         assert_eq!(committed, format!("{:#}\n", super::json_schema()));
+    }
+
+    /// To renew the file: `cargo run --release -- schema pattern > schemas/pattern.schema.json`.
+    #[test]
+    fn committed_pattern_file_is_the_schema() {
+        let committed = include_str!("../../schemas/pattern.schema.json");
+        assert_eq!(committed, format!("{:#}\n", super::pattern_schema()));
     }
 }

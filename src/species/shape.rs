@@ -59,6 +59,8 @@ pub(crate) enum Kind {
     Numbers(usize, Range),
     /// One of these words.
     Choice(&'static [Choice]),
+    /// One of these words or the path of a `.toml` file.
+    ChoiceOrFile(&'static [Choice]),
     /// A table.
     Table(&'static Shape),
     /// A list of tables, at least one and at most so many.

@@ -1,13 +1,17 @@
 //! The model in words, for people who read rather than compute.
 
 use super::fields::{MEDULLAE, PATTERNS};
-use super::model::{Continuity, CuticlePattern, HairClass, MedullaKind, PigmentBand, Station};
+use super::model::{Continuity, HairClass, MedullaKind, PigmentBand, Station};
+use super::pattern::CuticlePattern;
 use super::shape::Choice;
 
 impl CuticlePattern {
     /// What the scales look like: `long pointed petals`.
-    pub fn description(self) -> &'static str {
-        meaning(PATTERNS, self.name())
+    pub fn description(&self) -> &str {
+        match (meaning(PATTERNS, self.name()), self) {
+            ("", Self::Scales(recipe)) => &recipe.summary,
+            (known, _) => known,
+        }
     }
 }
 
@@ -115,7 +119,7 @@ mod tests {
             assert!(choice.doc.len() > 5, "{}", choice.name);
         }
         assert_eq!(
-            CuticlePattern::Pectinate.description(),
+            CuticlePattern::built_in("pectinate").unwrap().description(),
             "a comb of long narrow teeth"
         );
         assert_eq!(MedullaKind::None.description(), "no medulla");

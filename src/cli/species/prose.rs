@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn a_scale_says_its_tilt() {
         let cuticle = Cuticle {
-            pattern: CuticlePattern::Mosaic,
+            pattern: CuticlePattern::built_in("mosaic").unwrap(),
             pitch_um: 10.0,
             height_um: 1.0,
             around: 7,

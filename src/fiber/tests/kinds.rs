@@ -4,16 +4,15 @@
 use super::super::{Fiber, Region};
 use super::structure;
 use crate::sampling::{Rng, concentric_disk};
-use crate::species::{Continuity, Cortex, CuticlePattern, MedullaKind, Structure};
+use crate::species::{Continuity, Cortex, MedullaKind, Structure};
 use glam::DVec3;
 
 /// One fiber a kind, after the animals that have it.
 pub(super) fn structures() -> Vec<(&'static str, Structure)> {
-    use CuticlePattern as P;
     let hare = structure(
         90.0,
         1.6,
-        (P::IrregularWave, 12.0, 0.5, 4),
+        ("irregular-wave", 12.0, 0.5, 4),
         (
             0.8,
             MedullaKind::Multiserial {
@@ -26,7 +25,7 @@ pub(super) fn structures() -> Vec<(&'static str, Structure)> {
     let deer = structure(
         300.0,
         1.1,
-        (P::Mosaic, 18.0, 0.5, 14),
+        ("mosaic", 18.0, 0.5, 14),
         (
             0.94,
             MedullaKind::Lattice {
@@ -38,13 +37,13 @@ pub(super) fn structures() -> Vec<(&'static str, Structure)> {
     let fox = structure(
         75.0,
         1.2,
-        (P::Mosaic, 9.0, 0.5, 7),
+        ("mosaic", 9.0, 0.5, 7),
         (0.7, MedullaKind::SChannel { pitch_um: 7.0 }),
     );
     let marten = structure(
         80.0,
         1.3,
-        (P::Mosaic, 9.0, 0.5, 7),
+        ("mosaic", 9.0, 0.5, 7),
         (
             0.75,
             MedullaKind::Cloisonne {
@@ -57,7 +56,7 @@ pub(super) fn structures() -> Vec<(&'static str, Structure)> {
     let squirrel = structure(
         90.0,
         1.4,
-        (P::IrregularWave, 7.5, 0.4, 4),
+        ("irregular-wave", 7.5, 0.4, 4),
         (
             0.78,
             MedullaKind::TireTread {
@@ -70,7 +69,7 @@ pub(super) fn structures() -> Vec<(&'static str, Structure)> {
     let mut globules = structure(
         100.0,
         1.1,
-        (P::IrregularWave, 11.0, 0.6, 5),
+        ("irregular-wave", 11.0, 0.6, 5),
         (
             0.3,
             MedullaKind::Globules {
@@ -83,7 +82,7 @@ pub(super) fn structures() -> Vec<(&'static str, Structure)> {
     let dog = structure(
         70.0,
         1.1,
-        (P::Mosaic, 9.0, 0.5, 7),
+        ("mosaic", 9.0, 0.5, 7),
         (
             0.3,
             MedullaKind::Amorphous {
@@ -95,7 +94,7 @@ pub(super) fn structures() -> Vec<(&'static str, Structure)> {
     let mut human = structure(
         80.0,
         1.3,
-        (P::IrregularWave, 8.0, 0.4, 5),
+        ("irregular-wave", 8.0, 0.4, 5),
         (
             0.3,
             MedullaKind::Amorphous {

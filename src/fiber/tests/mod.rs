@@ -11,7 +11,7 @@ use crate::species::{Cuticle, CuticlePattern, Medulla, MedullaKind, Structure};
 pub(super) fn structure(
     diameter_um: f64,
     aspect: f64,
-    (pattern, pitch_um, height_um, around): (CuticlePattern, f64, f64, u32),
+    (pattern, pitch_um, height_um, around): (&str, f64, f64, u32),
     (ratio, kind): (f64, MedullaKind),
 ) -> Structure {
     Structure {
@@ -19,7 +19,7 @@ pub(super) fn structure(
         aspect,
         ior: 1.55,
         cuticle: Cuticle {
-            pattern,
+            pattern: CuticlePattern::built_in(pattern).unwrap(),
             pitch_um,
             height_um,
             around,
@@ -40,7 +40,7 @@ pub(super) fn structure(
 }
 
 pub(super) fn glass() -> Structure {
-    let cuticle = (CuticlePattern::Smooth, 10.0, 0.0, 1);
+    let cuticle = ("smooth", 10.0, 0.0, 1);
     structure(80.0, 1.0, cuticle, (0.0, MedullaKind::None))
 }
 
@@ -49,12 +49,7 @@ pub(super) fn fox_guard() -> Structure {
         pitch_um: 9.0,
         septum_um: 2.0,
     };
-    structure(
-        75.0,
-        1.2,
-        (CuticlePattern::Mosaic, 9.0, 0.5, 7),
-        (0.7, ladder),
-    )
+    structure(75.0, 1.2, ("mosaic", 9.0, 0.5, 7), (0.7, ladder))
 }
 
 pub(super) fn bear_guard() -> Structure {
@@ -63,12 +58,7 @@ pub(super) fn bear_guard() -> Structure {
         radius_sigma: 0.35,
         air_fraction: 0.4,
     };
-    structure(
-        130.0,
-        1.1,
-        (CuticlePattern::IrregularWave, 11.0, 0.6, 5),
-        (0.37, froth),
-    )
+    structure(130.0, 1.1, ("irregular-wave", 11.0, 0.6, 5), (0.37, froth))
 }
 
 pub(super) fn mink_under() -> Structure {
@@ -76,12 +66,7 @@ pub(super) fn mink_under() -> Structure {
         pitch_um: 9.0,
         septum_um: 2.0,
     };
-    let mut s = structure(
-        14.0,
-        1.0,
-        (CuticlePattern::DiamondPetal, 12.0, 0.5, 3),
-        (0.5, ladder),
-    );
+    let mut s = structure(14.0, 1.0, ("diamond-petal", 12.0, 0.5, 3), (0.5, ladder));
     s.medulla.pigment = 2.0;
     s
 }
@@ -91,19 +76,14 @@ pub(super) fn chinchilla() -> Structure {
         scattering_per_um: 0.1,
         asymmetry: 0.5,
     };
-    structure(
-        15.0,
-        1.0,
-        (CuticlePattern::Coronal, 25.0, 0.7, 1),
-        (0.75, medium),
-    )
+    structure(15.0, 1.0, ("coronal", 25.0, 0.7, 1), (0.75, medium))
 }
 
 pub(super) fn flat_seal() -> Structure {
     structure(
         40.0,
         3.5,
-        (CuticlePattern::IrregularWave, 8.0, 0.4, 10),
+        ("irregular-wave", 8.0, 0.4, 10),
         (0.0, MedullaKind::None),
     )
 }

@@ -6,21 +6,14 @@ use super::super::surface::Surface;
 use super::super::{Fiber, Part, Region};
 use crate::math::frame::direction;
 use crate::sampling::Rng;
-use crate::species::CuticlePattern;
+use crate::species::{CuticlePattern, pattern_names};
 use glam::DVec3;
-
-const PATTERNS: [CuticlePattern; 4] = [
-    CuticlePattern::Coronal,
-    CuticlePattern::IrregularWave,
-    CuticlePattern::Mosaic,
-    CuticlePattern::DiamondPetal,
-];
 
 #[test]
 fn height_closes_round_the_fiber_and_along_the_period() {
-    for pattern in PATTERNS {
+    for pattern in pattern_names() {
         let mut s = super::fox_guard();
-        s.cuticle.pattern = pattern;
+        s.cuticle.pattern = CuticlePattern::built_in(pattern).unwrap();
         let fiber = Fiber::build(&s, 1).unwrap();
         let Surface::Scales(scales) = &fiber.surface else {
             panic!("no scales")
@@ -49,10 +42,10 @@ fn height_closes_round_the_fiber_and_along_the_period() {
 /// Faces rise toward the tip: seen from outside their normals lean to the root by the tilt.
 #[test]
 fn faces_lean_to_the_root_by_the_tilt() {
-    for pattern in PATTERNS {
+    for pattern in pattern_names() {
         for (height, pitch) in [(0.5, 9.0), (0.5, 14.0)] {
             let mut s = super::fox_guard();
-            s.cuticle.pattern = pattern;
+            s.cuticle.pattern = CuticlePattern::built_in(pattern).unwrap();
             s.cuticle.height_um = height;
             s.cuticle.pitch_um = pitch;
             let fiber = Fiber::build(&s, 1).unwrap();
@@ -82,16 +75,17 @@ fn faces_lean_to_the_root_by_the_tilt() {
 
 #[test]
 fn mean_radius_stays_the_structures() {
-    for pattern in PATTERNS {
+    for pattern in pattern_names() {
         let mut s = super::fox_guard();
-        s.cuticle.pattern = pattern;
+        s.cuticle.pattern = CuticlePattern::built_in(pattern).unwrap();
         let section = Section::new(s.diameter_um, s.aspect);
         let lines = section.lines(section.line_count());
-        let pattern = Pattern::new(&s.cuticle, &lines, 3).unwrap();
+        let around = section.circumference();
+        let pattern = Pattern::new(&s.cuticle, &lines, around, 3).unwrap();
         let (mut sum, mut length) = (0.0, 0.0);
-        pattern.for_each_span(|tile, lo, hi| {
+        pattern.for_each_span(|(height, slope), lo, hi| {
             assert!(hi >= lo);
-            sum += (tile.height_um + tile.slope * 0.5 * (lo + hi)) * (hi - lo);
+            sum += (height + slope * 0.5 * (lo + hi)) * (hi - lo);
             length += hi - lo;
         });
         assert!((length / lines.len() as f64 / pattern.period_um - 1.0).abs() < 1e-12);

@@ -8,17 +8,21 @@ mod structure;
 use super::check::{Checked, Item, Value};
 use super::error::{Place, Problems};
 use super::model::{HairClass, Species};
+use std::path::Path;
 
 /// Builds the species of a checked root table.
+///
+/// * `folder`: of the file, where relative paths begin.
 ///
 /// `None` only if a problem was reported, here or by the check.
 pub(crate) fn build(
     root: &Checked,
     id: &str,
     text: String,
+    folder: &Path,
     problems: &mut Problems,
 ) -> Option<Species> {
-    let mut reader = Reader { problems };
+    let mut reader = Reader { problems, folder };
     let shared = table(root, "structure");
     let skin = table(root, "skin").and_then(|t| numbers(t, "color"));
     let mut classes = Vec::new();
@@ -62,6 +66,8 @@ pub(crate) fn build(
 /// Reads checked tables and reports what does not fit together.
 pub(super) struct Reader<'a> {
     pub(super) problems: &'a mut Problems,
+    /// Where relative paths begin.
+    pub(super) folder: &'a Path,
 }
 
 impl Reader<'_> {
@@ -103,14 +109,14 @@ pub(super) fn table<'a>(parent: &'a Checked, key: &str) -> Option<&'a Checked> {
     }
 }
 
-pub(super) fn tables<'a>(parent: &'a Checked, key: &str) -> Option<&'a [Checked]> {
+pub(crate) fn tables<'a>(parent: &'a Checked, key: &str) -> Option<&'a [Checked]> {
     match &parent.get(key)?.value {
         Value::Tables(tables) => Some(tables),
         _ => None,
     }
 }
 
-pub(super) fn number(parent: &Checked, key: &str) -> Option<f64> {
+pub(crate) fn number(parent: &Checked, key: &str) -> Option<f64> {
     parent.get(key).and_then(number_of)
 }
 

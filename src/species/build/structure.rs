@@ -5,9 +5,9 @@ use crate::species::Materials;
 use crate::species::check::{Checked, Item, Value, join};
 use crate::species::error::Place;
 use crate::species::model::{
-    Continuity, Cortex, Cuticle, CuticlePattern, Margin, Medulla, MedullaKind, Section, Station,
-    Structure,
+    Continuity, Cortex, Cuticle, Margin, Medulla, MedullaKind, Section, Station, Structure,
 };
+use crate::species::pattern::{CuticlePattern, PatternError, PatternLayout, recipe_of};
 
 /// Index of air, for fibers without voids where nothing reads it.
 const AIR: f64 = 1.0003;
@@ -163,32 +163,15 @@ impl Reader<'_> {
 
     fn cuticle(&mut self, layers: &Layers<'_>, thin_radius_um: Option<f64>) -> Option<Cuticle> {
         let roughness = self.layered(layers, "roughness");
-        let pattern = match self.choice(layers, "pattern")? {
-            "coronal" => CuticlePattern::Coronal,
-            "coronal-dentate" => CuticlePattern::CoronalDentate,
-            "broad-petal" => CuticlePattern::BroadPetal,
-            "diamond-petal" => CuticlePattern::DiamondPetal,
-            "lanceolate-petal" => CuticlePattern::LanceolatePetal,
-            "otter-fin" => CuticlePattern::OtterFin,
-            "pectinate" => CuticlePattern::Pectinate,
-            "mosaic" => CuticlePattern::Mosaic,
-            "mosaic-rippled" => CuticlePattern::MosaicRippled,
-            "regular-wave" => CuticlePattern::RegularWave,
-            "irregular-wave" => CuticlePattern::IrregularWave,
-            "close-wave" => CuticlePattern::CloseWave,
-            "single-chevron" => CuticlePattern::SingleChevron,
-            "double-chevron" => CuticlePattern::DoubleChevron,
-            "human-imbricate" => CuticlePattern::HumanImbricate,
-            "torn-paper" => CuticlePattern::TornPaper,
-            "squat-polygon" => CuticlePattern::SquatPolygon,
-            _ => {
-                // Scales of no height: nothing reads the other numbers.
-                return Some(Cuticle {
-                    roughness: roughness?,
-                    ..Cuticle::default()
-                });
-            }
+        let pattern = self.pattern(layers)?;
+        let CuticlePattern::Scales(recipe) = &pattern else {
+            // Scales of no height: nothing reads the other numbers.
+            return Some(Cuticle {
+                roughness: roughness?,
+                ..Cuticle::default()
+            });
         };
+        let tiled = recipe.layout != PatternLayout::Rows;
         let pitch_um = self.layered(layers, "pitch_um");
         let height_um = self.layered(layers, "height_um");
         let around = self.layered(layers, "around");
@@ -222,16 +205,6 @@ impl Reader<'_> {
                 "the scale tilt is atan(height / pitch)",
             );
         }
-        let tiled = matches!(
-            pattern,
-            CuticlePattern::Mosaic
-                | CuticlePattern::MosaicRippled
-                | CuticlePattern::SquatPolygon
-                | CuticlePattern::BroadPetal
-                | CuticlePattern::DiamondPetal
-                | CuticlePattern::LanceolatePetal
-                | CuticlePattern::OtterFin
-        );
         if let Some(count) = around
             && tiled
             && count < 2.0
@@ -262,6 +235,32 @@ impl Reader<'_> {
             roughness: roughness?,
             riser_roughness: riser_roughness?,
         })
+    }
+
+    /// A built-in pattern, or the recipe in a file beside this one.
+    fn pattern(&mut self, layers: &Layers<'_>) -> Option<CuticlePattern> {
+        let item = layers.find("pattern");
+        let Some(Value::Text(file)) = item.map(|i| &i.value) else {
+            return CuticlePattern::built_in(self.choice(layers, "pattern")?);
+        };
+        let place = layers.place("pattern");
+        let path = join(&layers.path, "pattern");
+        match recipe_of(&self.folder.join(file)) {
+            Ok(pattern) => return Some(pattern),
+            Err(PatternError::File(error)) => {
+                let message = format!("`{path}`: {error}");
+                let hint = "the path of a recipe is relative to this file";
+                self.conflict(place, message, hint);
+            }
+            Err(PatternError::Invalid(errors)) => {
+                for problem in &errors.problems {
+                    let at = errors.locate(&problem.place);
+                    let message = format!("`{path}`: {at}: {}", problem.message);
+                    self.problems.push(place, message, problem.hint.clone());
+                }
+            }
+        }
+        None
     }
 
     fn medulla(&mut self, layers: &Layers<'_>, thin_radius_um: Option<f64>) -> Option<Medulla> {

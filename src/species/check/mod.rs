@@ -88,6 +88,21 @@ pub(crate) fn check(root: &Table, problems: &mut Problems) -> (Checked, Origins)
     (checked, checker.origins)
 }
 
+/// Checks a document of another shape, without hair classes.
+pub(crate) fn check_table(
+    root: &Table,
+    shape: &'static Shape,
+    problems: &mut Problems,
+) -> (Checked, Origins) {
+    let mut checker = Checker {
+        problems,
+        origins: Origins::default(),
+    };
+    checker.read_sources(root);
+    let checked = checker.table(root, &Place::File(0..0), shape, &[], String::new());
+    (checked, checker.origins)
+}
+
 /// The names in `classes` that may be keys of class tables; problems are reported elsewhere. Without
 /// a list, every table that is not a key of the root is taken for a class, so that one missing key
 /// does not hide the others' problems.
@@ -213,7 +228,7 @@ impl Checker<'_> {
     /// Keys that have no meaning with the choice made beside them.
     fn idle_keys(&mut self, table: &Table, shape: &Shape, checked: &Checked) {
         for field in shape.fields {
-            let Kind::Choice(choices) = &field.kind else {
+            let (Kind::Choice(choices) | Kind::ChoiceOrFile(choices)) = &field.kind else {
                 continue;
             };
             let Some(item) = checked.get(field.key) else {

@@ -21,6 +21,10 @@ impl Checker<'_> {
             Kind::Names => self.names(node, path),
             Kind::Sources => self.sources(node, path),
             Kind::Choice(choices) => self.choice(node, path, choices),
+            Kind::ChoiceOrFile(choices) => match &node.data {
+                Data::Text(text) if text.ends_with(".toml") => self.text(node, path, 1000),
+                _ => self.choice(node, path, choices),
+            },
             Kind::Table(shape) => self.subtable(node, shape, path),
             Kind::Tables(shape, most) => self.tables(node, shape, *most, path),
             Kind::Number(range) => self.numbers(node, field, path, cover, |c, n| {

@@ -173,8 +173,10 @@ fn guard_hairs_are_what_their_literature_says() {
         let id = fact.id;
         let within = |[low, high]: [f64; 2], value: f64| (low..=high).contains(&value);
         let guard = &load(id, &[]).unwrap().classes[0];
-        let pattern = |s: &Station| s.structure.cuticle.pattern.name();
-        let scales: Vec<&str> = guard.stations.iter().map(pattern).collect();
+        let stations = guard.stations.iter();
+        let scales: Vec<&str> = stations
+            .map(|s| s.structure.cuticle.pattern.name())
+            .collect();
         assert_eq!(scales, fact.scales, "{id}");
         let width = |s: &&Station| s.structure.diameter_um;
         let wider = |a: &&Station, b: &&Station| width(a).total_cmp(&width(b));
@@ -203,7 +205,7 @@ fn underhairs_are_what_their_literature_says() {
         .swap_remove(0)
         .structure
         .cuticle;
-    assert_eq!((otter.pattern, otter.around), (CuticlePattern::OtterFin, 4));
+    assert_eq!((otter.pattern.name(), otter.around), ("otter-fin", 4));
     // 20 um wide and 5 thick, 3 to 4 scales per 100 um (hair standards of Cargille and McCrone).
     let seal = under("harbor-seal").stations.swap_remove(0).structure;
     assert!((seal.diameter_um * seal.aspect.sqrt() - 20.0).abs() < 1e-9);

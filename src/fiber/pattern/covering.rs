@@ -1,9 +1,7 @@
 //! Which scale lies on top along a line.
 
-use super::pattern::Span;
-
 /// Ranks of the rows that show on a line: those that end higher than every row before, cyclically.
-pub(super) fn visible(ends: &[f64], period: f64) -> impl Iterator<Item = usize> {
+pub(super) fn visible(ends: &[f64], period: f64) -> Vec<usize> {
     let before = ends.iter().fold(f64::NEG_INFINITY, |m, &e| m.max(e)) - period;
     ends.iter()
         .scan(before, |highest, &end| {
@@ -13,8 +11,7 @@ pub(super) fn visible(ends: &[f64], period: f64) -> impl Iterator<Item = usize> 
         })
         .enumerate()
         .filter_map(|(k, shows)| shows.then_some(k))
-        .collect::<Vec<_>>()
-        .into_iter()
+        .collect()
 }
 
 /// Lower envelope of `offset_k + (z - z_k)^2` over the seeds and their periodic images: the seeds
@@ -59,14 +56,11 @@ pub(super) fn envelope(
 }
 
 /// Lifts ends that ripples have pushed below their predecessor.
-pub(super) fn ascend(spans: &mut [Span], period: f64) {
-    let mut lo = spans
-        .iter()
-        .map(|s| s.end_um)
-        .fold(f64::NEG_INFINITY, f64::max)
-        - period;
-    for span in spans {
-        span.end_um = span.end_um.max(lo);
-        lo = span.end_um;
+pub(super) fn ascend(shown: &mut [(usize, f64)], period: f64) {
+    let highest = shown.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s.1));
+    let mut lo = highest - period;
+    for (_, end) in shown {
+        *end = end.max(lo);
+        lo = *end;
     }
 }
