@@ -5,7 +5,7 @@ use crate::blame::Blame;
 use crate::bsdf::{HairMaterial, TableSet, Zone};
 use crate::progress::{Cancel, Progress};
 use crate::species::{HairClass, Species, Station};
-use crate::table::{Provenance, ScatterTable, TableError};
+use crate::table::{Provenance, ScatterTable, TableError, Undyed};
 
 /// Materials that cannot be made.
 #[derive(Debug, thiserror::Error)]
@@ -28,7 +28,7 @@ impl AssemblyError {
     }
 }
 
-/// Finds or bakes the table of one station.
+/// Finds or bakes the table of one station; three of them where its materials differ by color.
 pub fn station_table(
     species: &Species,
     class: &HairClass,
@@ -37,7 +37,7 @@ pub fn station_table(
     cache: Option<&Cache>,
     progress: &dyn Progress,
     cancel: &Cancel,
-) -> Result<Baked, BakeError> {
+) -> Result<Baked<Undyed>, BakeError> {
     let provenance = Provenance {
         species: species.id.clone(),
         class: class.name.clone(),

@@ -102,3 +102,110 @@ fn reflected(dir: DVec3) -> Turn {
         transmitted: false,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SAME: Ratio = Ratio {
+        eta: 1.0,
+        inverse: 1.0,
+    };
+
+    fn from_angle(theta: f64) -> DVec3 {
+        DVec3::new(theta.sin(), 0.0, -theta.cos())
+    }
+
+    #[test]
+    fn a_perfect_mirror_of_any_roughness_passes_the_white_furnace() {
+        let mut rng = Rng::new(1, 0);
+        for roughness in [0.05, 0.3, 1.0] {
+            let mirror = Optics::Metal {
+                ior: 1.0,
+                extinction: 1e7,
+                roughness,
+            };
+            for theta in [0.0, 0.7, 1.3, 1.55] {
+                let n = 20_000;
+                let mut sum = 0.0;
+                for _ in 0..n {
+                    let dir = from_angle(theta);
+                    let (turn, share) = meet(&mirror, dir, DVec3::Z, SAME, 1.0, &mut rng).unwrap();
+                    assert!(!turn.transmitted && turn.dir.z > 0.0);
+                    sum += share;
+                }
+                let kept = sum / f64::from(n);
+                assert!((kept - 1.0).abs() < 1e-4, "{roughness} {theta}: {kept}");
+            }
+        }
+    }
+
+    /// Detailed balance of what a rough conductor reflects, losses of every bounce included.
+    #[test]
+    fn a_rough_conductor_is_reciprocal() {
+        let copper = Optics::Metal {
+            ior: 1.2,
+            extinction: 2.5,
+            roughness: 0.6,
+        };
+        let n = 400_000;
+        let cone = |from: f64, to: f64, stream: u64| {
+            let mut rng = Rng::new(3, stream);
+            let target = DVec3::new(-to.sin(), 0.0, to.cos());
+            let mut sum = 0.0;
+            for _ in 0..n {
+                let met = meet(&copper, from_angle(-from), DVec3::Z, SAME, 1.0, &mut rng);
+                let (turn, share) = met.unwrap();
+                if turn.dir.dot(target) > 0.97 {
+                    sum += share;
+                }
+            }
+            sum / f64::from(n)
+        };
+        let (a, b) = (0.3f64, 1.0f64);
+        let (forward, back) = (cone(a, b, 0), cone(b, a, 1));
+        let sigma = (1.0 / (forward * 4e5) + 1.0 / (back * 4e5)).sqrt();
+        let ratio = forward * a.cos() / (back * b.cos());
+        // The cones have a width, over which the cosine varies: two percent beside the noise.
+        assert!((ratio - 1.0).abs() < 4.0 * sigma + 0.02, "{ratio} {sigma}");
+    }
+
+    #[test]
+    fn layers_reflect_by_their_formula_and_pass_straight() {
+        let slab = Optics::Slab {
+            layers: 1.0,
+            ior: 1.55,
+            roughness: 0.0,
+        };
+        let mut rng = Rng::new(4, 0);
+        for theta in [0.0f64, 0.9, 1.4] {
+            let r = |s: bool| {
+                let (c, sin_t) = (theta.cos(), theta.sin() / 1.55);
+                let t = (1.0 - sin_t * sin_t).sqrt();
+                let amplitude = if s {
+                    (c - 1.55 * t) / (c + 1.55 * t)
+                } else {
+                    (1.55 * c - t) / (1.55 * c + t)
+                };
+                let r = amplitude * amplitude;
+                r + (1.0 - r).powi(2) * r / (1.0 - r * r)
+            };
+            let expected = 0.5 * (r(true) + r(false));
+            let n = 100_000;
+            let mut reflected = 0;
+            for _ in 0..n {
+                let dir = from_angle(theta);
+                let (turn, share) = meet(&slab, dir, DVec3::Z, SAME, 1.0, &mut rng).unwrap();
+                assert_eq!(share, 1.0);
+                if turn.transmitted {
+                    assert_eq!(turn.dir, dir);
+                } else {
+                    reflected += 1;
+                }
+            }
+            let sigma = (expected * (1.0 - expected) / f64::from(n)).sqrt();
+            let found = f64::from(reflected) / f64::from(n);
+            assert!((found - expected).abs() < 4.0 * sigma, "{theta}: {found}");
+        }
+    }
+}

@@ -21,7 +21,7 @@ use crate::fiber::{Fiber, FiberError};
 use crate::math::unicube::Unicube;
 use crate::progress::{Cancel, Progress};
 use crate::species::Structure;
-use crate::table::{Mode, Nodes, Provenance, StructureTable};
+use crate::table::{Mode, Nodes, Provenance, StructureTable, Undyed};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use tally::Tally;
@@ -118,9 +118,9 @@ impl BakeError {
 
 /// A finished (or stopped) bake.
 #[derive(Debug)]
-pub struct Baked {
-    /// The table.
-    pub table: StructureTable,
+pub struct Baked<T = StructureTable> {
+    /// The table, or what holds three of them.
+    pub table: T,
     /// False if the bake was stopped; the table then holds the passes that were complete.
     pub complete: bool,
 }
@@ -205,7 +205,9 @@ pub fn bake(
     Ok(Baked { table, complete })
 }
 
-/// The table of a structure from the cache, or a bake of it that is then kept there.
+/// The tables of a structure from the cache or baked: one, or one a channel where its materials differ
+/// by color. Channels are baked with the same seed and photons each, so that they differ by what the
+/// materials do and not by noise.
 ///
 /// A stopped bake is returned but not kept. A cache that cannot be written to costs the next bake
 /// its time and is no error.
@@ -216,8 +218,35 @@ pub fn find_or_bake(
     cache: Option<&Cache>,
     progress: &dyn Progress,
     cancel: &Cancel,
-) -> Result<Baked, BakeError> {
+) -> Result<Baked<Undyed>, BakeError> {
     check(settings)?;
+    let gray = |structure: &Structure, provenance| {
+        find_or_bake_gray(structure, settings, provenance, cache, progress, cancel)
+    };
+    if !structure.is_colored() {
+        let baked = gray(structure, provenance)?;
+        return Ok(Baked {
+            table: Undyed::Gray(baked.table),
+            complete: baked.complete,
+        });
+    }
+    let red = gray(&structure.channel(0), provenance.clone())?;
+    let green = gray(&structure.channel(1), provenance.clone())?;
+    let blue = gray(&structure.channel(2), provenance)?;
+    Ok(Baked {
+        complete: red.complete && green.complete && blue.complete,
+        table: Undyed::Colored(Box::new([red.table, green.table, blue.table])),
+    })
+}
+
+fn find_or_bake_gray(
+    structure: &Structure,
+    settings: &Settings,
+    provenance: Provenance,
+    cache: Option<&Cache>,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Baked, BakeError> {
     let content = content_hash(structure, settings);
     if let Some(table) = cache.and_then(|cache| cache.get(&content)) {
         // The same fiber may have been baked for another species: the table keeps its numbers and

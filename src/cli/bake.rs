@@ -1,4 +1,5 @@
-//! `vair bake`: photons through a fiber, a structure table out.
+//! `vair bake`: photons through a fiber, a structure table out; a dyed one where materials differ by
+//! color.
 
 use super::{Console, Failure};
 use crate::assembly::station_table;
@@ -6,7 +7,7 @@ use crate::bake::{Cache, Settings};
 use crate::blame::Blame;
 use crate::io::check_writable;
 use crate::species::{self, HairClass, Species, Station};
-use crate::table::{Mode, StructureTable};
+use crate::table::{Mode, StructureTable, Undyed};
 use std::path::PathBuf;
 
 /// Arguments of `vair bake`.
@@ -91,8 +92,20 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         let (cache, cancel) = (cache.as_ref(), console.cancel());
         station_table(&species, class, station, &settings, cache, console, cancel)
     })??;
-    baked.table.write(&args.output)?;
-    report(&baked.table, console);
+    match &baked.table {
+        Undyed::Gray(table) => table.write(&args.output)?,
+        Undyed::Colored(_) => {
+            // Absorption levels serve all colors of one fiber; here each color meets another one.
+            let band = class.band_at(station.at);
+            let maps = baked.table.dye(band.absorption_per_um())?;
+            maps.write(&args.output)?;
+            console.say(format!(
+                "materials differ by color: a table of R G B, with eumelanin {} and pheomelanin {}",
+                band.eumelanin, band.pheomelanin
+            ));
+        }
+    }
+    report(baked.table.tables(), console);
     if !baked.complete {
         let kept = format!(
             "stopped; {} holds the passes done so far",
@@ -164,11 +177,14 @@ pub(super) fn find_station(class: &HairClass, at: Option<f64>) -> Result<&Statio
 }
 
 /// Energy and loss, so that a bad bake is seen at once.
-fn report(table: &StructureTable, console: &Console) {
+fn report(tables: &[StructureTable], console: &Console) {
     let clear = |f: fn(&crate::table::Ledger) -> u64| -> f64 {
-        (0..table.nodes.len())
-            .map(|node| f(table.ledger(node, 0)) as f64)
-            .sum()
+        let nodes = |t: &StructureTable| {
+            (0..t.nodes.len())
+                .map(|n| f(t.ledger(n, 0)) as f64)
+                .sum::<f64>()
+        };
+        tables.iter().map(nodes).sum()
     };
     let emitted = clear(|l| l.emitted);
     console.say(format!(
@@ -178,7 +194,7 @@ fn report(table: &StructureTable, console: &Console) {
         100.0 * clear(|l| l.truncated) / emitted,
         clear(|l| l.lost) / emitted,
     ));
-    if table.nodes.mode == Mode::Paper && clear(|l| l.truncated) > 1e-3 * emitted {
+    if tables[0].nodes.mode == Mode::Paper && clear(|l| l.truncated) > 1e-3 * emitted {
         console.say("warning: the cap on events cuts off light; cone mode does not have it");
     }
 }

@@ -1,5 +1,6 @@
 //! The fields of a species file.
 
+use super::material_fields::MATERIALS;
 use super::shape::{Choice, Field, Kind, Range, Shape};
 
 /// The whole file. Beside these keys it has one [`CLASS`] table for each name in `classes`.
@@ -103,6 +104,12 @@ const IOR: Field = Field::layered(
 const CUTICLE_FIELD: Field =
     Field::layered("cuticle", Kind::Table(&CUTICLE), "The scales outside.");
 const MEDULLA_FIELD: Field = Field::layered("medulla", Kind::Table(&MEDULLA), "The core.");
+
+const MATERIALS_FIELD: Field = Field::optional(
+    "materials",
+    Kind::Table(&MATERIALS),
+    "What parts are made of, where that is not keratin and air.",
+);
 
 const TWIST: Field = Field::optional(
     "twist_turns_per_cm",
@@ -208,6 +215,7 @@ static STRUCTURE: Shape = Shape {
         CUTICLE_FIELD,
         CORTEX_FIELD,
         MEDULLA_FIELD,
+        MATERIALS_FIELD,
     ],
 };
 
@@ -233,6 +241,7 @@ static STATION: Shape = Shape {
         CUTICLE_FIELD,
         CORTEX_FIELD,
         MEDULLA_FIELD,
+        MATERIALS_FIELD,
     ],
 };
 
@@ -712,6 +721,6 @@ static GROOM: Shape = Shape {
     ],
 };
 
-const fn number(min: f64, max: f64, unit: &'static str) -> Range {
+pub(super) const fn number(min: f64, max: f64, unit: &'static str) -> Range {
     Range { min, max, unit }
 }

@@ -372,6 +372,18 @@ impl PigmentBand {
     }
 }
 
+impl HairClass {
+    /// The pigment at a position along the hair, for hairs of mean length.
+    ///
+    /// * `at`: 0 root .. 1 tip.
+    pub fn band_at(&self, at: f64) -> &PigmentBand {
+        let from_tip_mm = (1.0 - at) * self.groom.length_mm;
+        let band = self.pigment.iter().find(|band| from_tip_mm <= band.to_mm);
+        // The last band has no end; a class has at least one.
+        band.unwrap_or(&self.pigment[self.pigment.len() - 1])
+    }
+}
+
 /// How one hair class grows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClassGroom {

@@ -85,6 +85,12 @@ fn property(field: &Field, definitions: &mut Map<String, Value>) -> Value {
         Kind::ChoiceOrFile(choices) => json!({
             "anyOf": [one_of(choices), { "type": "string", "pattern": "\\.toml$" }],
         }),
+        Kind::Color(range) => {
+            let number = number("number", *range);
+            let three =
+                json!({ "type": "array", "minItems": 3, "maxItems": 3, "items": number.clone() });
+            cited(json!({ "anyOf": [number, three] }))
+        }
         Kind::Table(shape) => reference(shape, definitions),
         Kind::Tables(shape, most) => json!({
             "type": "array",

@@ -57,6 +57,8 @@ pub(crate) enum Kind {
     Whole(Range),
     /// A fixed count of numbers.
     Numbers(usize, Range),
+    /// A number for all color channels or three for linear R, G, B, as `Number`.
+    Color(Range),
     /// One of these words.
     Choice(&'static [Choice]),
     /// One of these words or the path of a `.toml` file.

@@ -87,13 +87,15 @@ impl ScatterMaps {
             self.texels()
         );
         ensure!(
-            self.ledger.len() == bins,
-            "{} ledgers for {bins} nodes",
+            self.ledger.len() == bins || self.ledger.len() == 3 * bins,
+            "{} ledgers for {bins} nodes; one or three a node are possible",
             self.ledger.len()
         );
         check_error(&self.error, self.rgb.len())?;
-        for (node, ledger) in self.ledger.iter().enumerate() {
-            check_ledger(ledger, node)?;
+        for (node, ledgers) in self.ledger.chunks(self.bakes()).enumerate() {
+            for ledger in ledgers {
+                check_ledger(ledger, node)?;
+            }
             for channel in 0..3 {
                 check_flux(self.map(node).iter().map(|t| t[channel]), node)?;
             }

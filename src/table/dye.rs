@@ -39,32 +39,7 @@ impl StructureTable {
     ///   R, G, B, finite and >= 0.
     /// * Errors: absorption out of range, or nonzero in a table that holds only the clear level.
     pub fn dye(&self, absorption_per_um: [f64; 3]) -> Result<ScatterMaps, TableError> {
-        if !absorption_per_um.iter().all(|a| a.is_finite() && *a >= 0.0) {
-            return Err(TableError::Request(format!(
-                "absorption must be finite and not negative, not {absorption_per_um:?} per um"
-            )));
-        }
-        if self.levels.len() < 2 && absorption_per_um != [0.0; 3] {
-            return Err(TableError::Request(
-                "the table holds only the clear level and cannot be dyed".to_owned(),
-            ));
-        }
-        let rules = absorption_per_um.map(|a| Rule::new(&self.levels, a * self.radius_um));
-        let (texels, levels) = (self.texels(), self.levels.len());
-        let mut rgb = vec![[0.0; 3]; self.nodes.len() * texels];
-        for (node, out) in rgb.chunks_mut(texels).enumerate() {
-            let start = node * levels * texels;
-            let flux = &self.flux[start..start + levels * texels];
-            out.par_chunks_mut(CHUNK).enumerate().for_each(|(i, out)| {
-                for (j, rgb) in out.iter_mut().enumerate() {
-                    let texel = i * CHUNK + j;
-                    let at = |level: usize| flux[level * texels + texel];
-                    if at(0) > 0.0 {
-                        *rgb = [0, 1, 2].map(|c| rules[c].apply(at));
-                    }
-                }
-            });
-        }
+        let rgb = dye_channels([self; 3], absorption_per_um)?;
         let ledger = (0..self.nodes.len()).map(|n| *self.ledger(n, 0));
         Ok(ScatterMaps {
             nodes: self.nodes.clone(),
@@ -77,6 +52,79 @@ impl StructureTable {
             provenance: self.provenance.clone(),
         })
     }
+}
+
+impl ScatterMaps {
+    /// Tables of one fiber as light of R, G and B meets it, each dyed for its channel.
+    ///
+    /// * Errors: as for [`StructureTable::dye`], or tables of different sizes.
+    pub(super) fn of_channels(
+        tables: &[StructureTable; 3],
+        absorption_per_um: [f64; 3],
+    ) -> Result<Self, TableError> {
+        let [red, green, blue] = tables;
+        let alike = |t: &StructureTable| t.nodes == red.nodes && t.res == red.res;
+        if !tables.iter().all(alike) {
+            return Err(TableError::Request(
+                "the tables of R, G and B have different nodes or sizes".to_owned(),
+            ));
+        }
+        let rgb = dye_channels([red, green, blue], absorption_per_um)?;
+        let nodes = 0..red.nodes.len();
+        let ledger = nodes.flat_map(|n| tables.iter().map(move |t| *t.ledger(n, 0)));
+        let error = red.error.iter().zip(&green.error).zip(&blue.error);
+        Ok(Self {
+            nodes: red.nodes.clone(),
+            res: red.res,
+            rgb,
+            error: error.map(|((r, g), b)| r.max(*g).max(*b)).collect(),
+            absorption_per_um,
+            radius_um: red.radius_um,
+            ledger: ledger.collect(),
+            provenance: red.provenance.clone(),
+        })
+    }
+}
+
+/// Maps of R, G and B, each from its own table.
+fn dye_channels(
+    tables: [&StructureTable; 3],
+    absorption_per_um: [f64; 3],
+) -> Result<Vec<[f32; 3]>, TableError> {
+    if !absorption_per_um.iter().all(|a| a.is_finite() && *a >= 0.0) {
+        return Err(TableError::Request(format!(
+            "absorption must be finite and not negative, not {absorption_per_um:?} per um"
+        )));
+    }
+    if tables.iter().any(|t| t.levels.len() < 2) && absorption_per_um != [0.0; 3] {
+        return Err(TableError::Request(
+            "the table holds only the clear level and cannot be dyed".to_owned(),
+        ));
+    }
+    let rules: [Rule; 3] = std::array::from_fn(|c| {
+        Rule::new(
+            &tables[c].levels,
+            absorption_per_um[c] * tables[c].radius_um,
+        )
+    });
+    let texels = tables[0].texels();
+    let mut rgb = vec![[0.0; 3]; tables[0].nodes.len() * texels];
+    for (node, out) in rgb.chunks_mut(texels).enumerate() {
+        let flux = tables.map(|table| {
+            let levels = table.levels.len();
+            &table.flux[node * levels * texels..(node + 1) * levels * texels]
+        });
+        out.par_chunks_mut(CHUNK).enumerate().for_each(|(i, out)| {
+            for (j, rgb) in out.iter_mut().enumerate() {
+                let texel = i * CHUNK + j;
+                *rgb = [0, 1, 2].map(|c| {
+                    let at = |level: usize| flux[c][level * texels + texel];
+                    if at(0) > 0.0 { rules[c].apply(at) } else { 0.0 }
+                });
+            }
+        });
+    }
+    Ok(rgb)
 }
 
 /// How the flux at one optical depth follows from the levels; the same for every texel.

@@ -21,7 +21,8 @@ pub struct ScatterMaps {
     pub absorption_per_um: [f64; 3],
     /// Mean radius of the fiber, micrometers.
     pub radius_um: f64,
-    /// Ledger of the undyed level per node: photons, truncation and loss of the bake.
+    /// Ledgers of the undyed level, per node: photons, truncation and loss of the bake. One a node, or
+    /// three (R, G, B) where materials differ by color and each channel was baked by itself.
     pub ledger: Vec<Ledger>,
     /// Where the table comes from.
     pub provenance: Provenance,
@@ -31,6 +32,17 @@ impl ScatterMaps {
     /// Texels of one map.
     pub fn texels(&self) -> usize {
         6 * self.res * self.res
+    }
+
+    /// How many bakes they come from: 1, or 3 for R, G and B.
+    pub fn bakes(&self) -> usize {
+        (self.ledger.len() / self.nodes.len().max(1)).max(1)
+    }
+
+    /// Photons over all nodes; those of one bake where there are three.
+    pub fn photons(&self) -> f64 {
+        let ledgers = self.ledger.iter().step_by(self.bakes());
+        ledgers.map(Ledger::photons).sum()
     }
 
     /// The map of one node.

@@ -12,6 +12,7 @@ mod nodes;
 mod plot;
 mod scatter;
 mod structure;
+mod undyed;
 
 pub use self::exr::{FORMAT, TableFile};
 pub use error::TableError;
@@ -20,3 +21,4 @@ pub use nodes::{Mode, Nodes};
 pub use plot::Plot;
 pub use scatter::{Lobe, ScatterTable};
 pub use structure::{Ledger, PHOTON, Provenance, StructureTable};
+pub use undyed::Undyed;

@@ -44,7 +44,9 @@ struct Summary<'a> {
     channels: Vec<String>,
     /// `albedo[node][channel]`.
     albedo: Vec<Vec<f64>>,
-    /// `ledger[node][level]`; a dyed table has the clear level's only.
+    /// Bakes of a dyed table: 1, or 3 where each channel was baked by itself.
+    bakes: Option<usize>,
+    /// `ledger[node][level]`; a dyed table has the clear level's only, of each bake.
     ledger: Vec<&'a [Ledger]>,
     provenance: &'a Provenance,
 }
@@ -62,6 +64,7 @@ impl<'a> Summary<'a> {
                     radius_um: t.radius_um,
                     levels: &t.levels,
                     absorption_per_um: None,
+                    bakes: None,
                     channels: (0..levels).map(|l| format!("a{l:02}")).collect(),
                     albedo: (0..t.nodes.len()).map(albedo).collect(),
                     ledger: t.ledger.chunks(levels).collect(),
@@ -75,9 +78,10 @@ impl<'a> Summary<'a> {
                 radius_um: t.radius_um,
                 levels: &[],
                 absorption_per_um: Some(t.absorption_per_um),
+                bakes: Some(t.bakes()),
                 channels: ["R", "G", "B"].map(str::to_owned).to_vec(),
                 albedo: (0..t.nodes.len()).map(|n| t.albedo(n).to_vec()).collect(),
-                ledger: t.ledger.chunks(1).collect(),
+                ledger: t.ledger.chunks(t.bakes()).collect(),
                 provenance: &t.provenance,
             },
         }
@@ -116,6 +120,7 @@ impl<'a> Summary<'a> {
             "channels": self.channels,
             "levels": self.levels,
             "absorption_per_um": self.absorption_per_um,
+            "bakes": self.bakes,
             "radius_um": self.radius_um,
             "photons": self.photons(),
             "ledger_units_per_photon": PHOTON,
@@ -182,7 +187,15 @@ impl<'a> Summary<'a> {
         if let Some(absorption) = self.absorption_per_um {
             line("absorption", format!("{} per um", numbers(&absorption)));
         }
-        line("photons", format!("{}, seed {}", self.photons(), p.seed));
+        let each = if self.bakes == Some(3) {
+            " for each of R, G, B: materials differ by color"
+        } else {
+            ""
+        };
+        line(
+            "photons",
+            format!("{}{each}, seed {}", self.photons(), p.seed),
+        );
         line("max events", p.max_events.to_string());
         line("content", p.content.clone());
         line("program", p.program.clone());

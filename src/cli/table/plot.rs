@@ -59,7 +59,7 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Mode::Paper => "paper",
         Mode::Cone => "cone",
     };
-    let photons: f64 = maps.ledger.iter().map(|l| l.photons()).sum();
+    let photons = maps.photons();
     let plot = Plot {
         maps,
         gray: subject.gray,

@@ -2,6 +2,7 @@
 //! several values. Reports what is missing or contradicts itself; goes on after each problem.
 
 mod groom;
+mod materials;
 mod pigment;
 mod structure;
 
@@ -22,7 +23,11 @@ pub(crate) fn build(
     folder: &Path,
     problems: &mut Problems,
 ) -> Option<Species> {
-    let mut reader = Reader { problems, folder };
+    let mut reader = Reader {
+        problems,
+        folder,
+        seen: Vec::new(),
+    };
     let shared = table(root, "structure");
     let skin = table(root, "skin").and_then(|t| numbers(t, "color"));
     let mut classes = Vec::new();
@@ -68,6 +73,8 @@ pub(super) struct Reader<'a> {
     pub(super) problems: &'a mut Problems,
     /// Where relative paths begin.
     pub(super) folder: &'a Path,
+    /// Places of problems that several stations may share. See [`Reader::conflict_once`].
+    seen: Vec<Place>,
 }
 
 impl Reader<'_> {
@@ -86,6 +93,14 @@ impl Reader<'_> {
             pigment: pigment?,
             groom: groom?,
         })
+    }
+
+    /// As [`Reader::conflict`], once for each place: many stations inherit what an outer table says.
+    pub(super) fn conflict_once(&mut self, place: &Place, message: String, hint: &str) {
+        if !self.seen.contains(place) {
+            self.seen.push(place.clone());
+            self.conflict(place, message, hint);
+        }
     }
 
     /// Reports that two values do not fit together.

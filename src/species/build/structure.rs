@@ -1,7 +1,6 @@
 //! Stations: values from the station, else from the class's `structure`, else from the species'.
 
 use super::{Reader, number, number_of, place_of, tables};
-use crate::species::Materials;
 use crate::species::check::{Checked, Item, Value, join};
 use crate::species::error::Place;
 use crate::species::model::{
@@ -20,33 +19,39 @@ const HIGHEST_SCALE: f64 = 0.25;
 const STEEPEST_SCALE: f64 = 0.5;
 
 /// A table of a station together with the tables it inherits from, innermost first.
-struct Layers<'a> {
-    path: String,
+pub(super) struct Layers<'a> {
+    pub(super) path: String,
     place: &'a Place,
-    tables: Vec<&'a Checked>,
+    pub(super) tables: Vec<&'a Checked>,
 }
 
 impl<'a> Layers<'a> {
-    fn find(&self, key: &str) -> Option<&'a Item> {
+    pub(super) fn find(&self, key: &str) -> Option<&'a Item> {
         self.tables.iter().find_map(|t| t.get(key))
     }
 
-    fn is_misspelt(&self, key: &str) -> bool {
+    pub(super) fn is_misspelt(&self, key: &str) -> bool {
         self.tables.iter().any(|t| t.is_misspelt(key))
     }
 
+    /// The path under which the value of `key` was written.
+    pub(super) fn path_of(&self, key: &str) -> String {
+        let table = self.tables.iter().find(|t| t.get(key).is_some());
+        table.map_or_else(|| join(&self.path, key), |t| t.path_of(key))
+    }
+
     /// Where the value of `key` was written.
-    fn place(&self, key: &str) -> &'a Place {
+    pub(super) fn place(&self, key: &str) -> &'a Place {
         self.find(key).map_or(self.place, |i| &i.place)
     }
 
     /// A number that may be left out.
-    fn number_or(&self, key: &str, default: f64) -> f64 {
+    pub(super) fn number_or(&self, key: &str, default: f64) -> f64 {
         self.find(key).and_then(number_of).unwrap_or(default)
     }
 
     /// A word that may be left out.
-    fn word(&self, key: &str) -> Option<&'static str> {
+    pub(super) fn word(&self, key: &str) -> Option<&'static str> {
         match self.find(key)?.value {
             Value::Choice(name) => Some(name),
             _ => None,
@@ -54,7 +59,7 @@ impl<'a> Layers<'a> {
     }
 
     /// The tables behind `key`.
-    fn inner(&self, key: &str) -> Self {
+    pub(super) fn inner(&self, key: &str) -> Self {
         let inner = |t: &&'a Checked| match t.get(key).map(|i| &i.value) {
             Some(Value::Table(table)) => Some(table),
             _ => None,
@@ -123,6 +128,9 @@ impl Reader<'_> {
             .and_then(|l| self.medulla(&l, thin_radius_um));
         let section = self.section(layers);
         let cortex = Self::cortex(&layers.inner("cortex"));
+        let materials = ior
+            .zip(medulla.as_ref())
+            .and_then(|(ior, medulla)| self.materials(&layers.inner("materials"), ior, medulla));
         Some(Structure {
             diameter_um: diameter_um?,
             aspect: aspect?,
@@ -132,7 +140,7 @@ impl Reader<'_> {
             cuticle: cuticle?,
             cortex,
             medulla: medulla?,
-            materials: Materials::default(),
+            materials: materials?,
         })
     }
 

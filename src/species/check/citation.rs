@@ -93,7 +93,10 @@ impl Checker<'_> {
             return value;
         };
         let unit = match &field.kind {
-            Kind::Number(range) | Kind::Whole(range) | Kind::Numbers(_, range) => range.unit,
+            Kind::Number(range)
+            | Kind::Whole(range)
+            | Kind::Numbers(_, range)
+            | Kind::Color(range) => range.unit,
             _ => "",
         };
         let values = match &value {

@@ -36,6 +36,9 @@ impl Checker<'_> {
             Kind::Numbers(count, range) => self.numbers(node, field, path, cover, |c, n| {
                 c.list(n, path, *count, *range)
             }),
+            Kind::Color(range) => {
+                self.numbers(node, field, path, cover, |c, n| c.color(n, path, *range))
+            }
         }
     }
 
@@ -170,6 +173,15 @@ impl Checker<'_> {
                 let kind = if whole { "a whole number" } else { "a number" };
                 self.wrong(node, path, &format!("{kind} from {range}"))
             }
+        }
+    }
+
+    /// A number for all channels, or three.
+    fn color(&mut self, node: &Node, path: &str, range: Range) -> Value {
+        match &node.data {
+            Data::Array(items) if items.len() == 3 => self.list(node, path, 3, range),
+            Data::Array(_) => self.wrong(node, path, &format!("a number from {range}, or three")),
+            _ => self.number(node, path, range, false),
         }
     }
 

@@ -14,7 +14,7 @@ fn ranges(shape: &Shape, path: &[&str]) -> Option<(Range, bool)> {
     }
     match &shape.field(key)?.kind {
         Kind::Table(inner) | Kind::Tables(inner, _) => ranges(inner, rest),
-        Kind::Number(range) | Kind::Numbers(_, range) => Some((*range, false)),
+        Kind::Number(range) | Kind::Numbers(_, range) | Kind::Color(range) => Some((*range, false)),
         Kind::Whole(range) => Some((*range, true)),
         _ => None,
     }
@@ -87,8 +87,12 @@ fn every_number_is_accepted_at_its_ends_and_refused_beyond() {
     }
     let mut numbers = BTreeSet::new();
     for shape in all_shapes() {
-        let number =
-            |f: &&Field| matches!(f.kind, Kind::Number(_) | Kind::Whole(_) | Kind::Numbers(..));
+        let number = |f: &&Field| {
+            matches!(
+                f.kind,
+                Kind::Number(_) | Kind::Whole(_) | Kind::Numbers(..) | Kind::Color(_)
+            )
+        };
         numbers.extend(shape.fields.iter().filter(number).map(|f| f.key.to_owned()));
     }
     assert_eq!(seen, numbers, "every field of the description was tried");
@@ -246,4 +250,91 @@ fn parameters_of_another_choice_are_refused() {
     assert!(
         lines[0].contains("has no meaning with kind \"ladder\" (it belongs to amorphous, froth)")
     );
+}
+
+#[test]
+fn materials_are_read_and_their_rules_hold() {
+    let gold = set(
+        "fox",
+        &[
+            "structure.materials.cuticle.boundary=metal",
+            "structure.materials.cuticle.metal=gold",
+            "guard.structure.materials.riser.boundary=diffuse",
+            "guard.structure.materials.riser.albedo=[0.1, 0.2, 0.3]",
+            "under.structure.materials.void.index=1.33",
+            "guard.stations.0.materials.cortex.index=[1.54, 1.55, 1.56]",
+        ],
+    )
+    .unwrap();
+    let materials =
+        |class: usize, station: usize| gold.classes[class].stations[station].structure.materials;
+    let Boundary::Metal { index, extinction } = materials(0, 1).cuticle.boundary else {
+        panic!("{:?}", materials(0, 1));
+    };
+    assert!(index[0] < 0.3 && index[2] > 1.2 && extinction[0] > extinction[2]);
+    let albedo = [0.1, 0.2, 0.3];
+    assert_eq!(materials(0, 0).riser, Some(Boundary::Diffuse { albedo }));
+    assert_eq!(materials(1, 0).riser, None);
+    assert_eq!(materials(1, 0).void.filling.index, Some([1.33; 3]));
+    let cortex = materials(0, 0).cortex.filling;
+    assert_eq!(cortex.index, Some([1.54, 1.55, 1.56]));
+    assert_eq!(materials(0, 1).cortex.filling, Filling::default());
+
+    let m = "structure.materials";
+    let cases: &[(&[&str], &str)] = &[
+        (&["void.boundary=metal"], "expected one of `metal`"),
+        (
+            &["void.boundary=metal", "void.index=0.2"],
+            "materials.void.extinction` is missing",
+        ),
+        (
+            &[
+                "void.boundary=metal",
+                "void.metal=gold",
+                "void.index=0.2",
+                "void.extinction=3",
+            ],
+            "expected one of `metal`",
+        ),
+        (&["void.boundary=diffuse"], "void.albedo` is missing"),
+        (&["void.boundary=slab"], "void.layers` is missing"),
+        (&["void.albedo=0.5"], "has no meaning without a `boundary`"),
+        (&["riser.layers=2"], "has no meaning without a `boundary`"),
+        (&["void.index=0.5"], "expected 1 to 3 for what light"),
+        (&["void.index_file=nowhere.csv"], "no table of a refractive"),
+        (&["cuticle.index=1.6"], "write it into the cortex"),
+        (
+            &["cortex.boundary=dielectric"],
+            "a boundary that the fiber does not have",
+        ),
+    ];
+    for (overrides, expected) in cases {
+        let overrides: Vec<String> = overrides.iter().map(|o| format!("{m}.{o}")).collect();
+        let overrides: Vec<&str> = overrides.iter().map(String::as_str).collect();
+        let lines = refusals(set("fox", &overrides));
+        assert_eq!(lines.len(), 1, "{overrides:?}: {lines:?}");
+        assert!(lines[0].contains(expected), "{overrides:?}: {lines:?}");
+    }
+    let absent = "under.stations.0.materials.medulla.scattering_per_um=0.1";
+    let lines = refusals(set("fox", &[absent]));
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    assert!(lines[0].contains("has no meaning with a medulla of kind"));
+}
+
+#[test]
+fn measured_indices_are_read_beside_the_species_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let fox = folder.path().join("my-fox.toml");
+    std::fs::write(&fox, text_of("fox")).unwrap();
+    std::fs::write(
+        folder.path().join("glass.csv"),
+        "nm,n\n400,1.60\n700,1.54\n",
+    )
+    .unwrap();
+    let set = ["structure.materials.cortex.index_file=glass.csv".to_owned()];
+    let fox = load(fox.to_str().unwrap(), &set).unwrap();
+    let structure = &fox.classes[0].stations[0].structure;
+    assert!(structure.is_colored());
+    let index = structure.materials.cortex.filling.index.unwrap();
+    assert!(index[0] < index[1] && index[1] < index[2], "{index:?}");
 }

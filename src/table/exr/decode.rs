@@ -94,6 +94,10 @@ fn structure(
 
 fn scatter(nodes: Nodes, parts: Vec<Part>, head: &Attributes) -> Result<ScatterMaps, TableError> {
     let absorption: Vec<f64> = head.get_list("absorption_per_um", 3)?;
+    let bakes: usize = head.get_int("bakes")?;
+    if bakes != 1 && bakes != 3 {
+        return Err(wrong(format!("it comes from {bakes} bakes, not 1 or 3")));
+    }
     let mut maps = ScatterMaps {
         nodes,
         res: parts[0].res,
@@ -105,7 +109,7 @@ fn scatter(nodes: Nodes, parts: Vec<Part>, head: &Attributes) -> Result<ScatterM
         provenance: provenance(head)?,
     };
     for mut part in parts {
-        maps.ledger.extend(ledger(&part.attributes, 1)?);
+        maps.ledger.extend(ledger(&part.attributes, bakes)?);
         expect_channels(&part, 4)?;
         let r = take_channel(&mut part, "R")?;
         let g = take_channel(&mut part, "G")?;

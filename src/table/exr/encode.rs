@@ -31,7 +31,8 @@ pub(super) fn structure(table: &StructureTable) -> Vec<Part> {
 pub(super) fn scatter(maps: &ScatterMaps) -> Vec<Part> {
     let texels = maps.texels();
     let mut parts = parts(&maps.nodes, maps.res, |node, attributes| {
-        put_ledger(attributes, &maps.ledger[node..=node]);
+        let bakes = maps.bakes();
+        put_ledger(attributes, &maps.ledger[node * bakes..(node + 1) * bakes]);
         attributes.list("albedo", maps.albedo(node));
         let channel = |c: usize| maps.map(node).iter().map(|texel| texel[c]).collect();
         vec![
@@ -46,6 +47,7 @@ pub(super) fn scatter(maps: &ScatterMaps) -> Vec<Part> {
     });
     let head = &mut parts[0].attributes;
     head.text("kind", "scatter");
+    head.int("bakes", maps.bakes());
     head.list("absorption_per_um", maps.absorption_per_um);
     head.double("radius_um", maps.radius_um);
     put_provenance(head, &maps.provenance);

@@ -73,9 +73,8 @@ impl Plot<'_> {
         }
         let maps = self.maps;
         let table = ScatterTable::new(maps.nodes.clone(), maps.res, maps.rgb.clone());
-        let photons = maps.ledger.iter().map(|l| l.photons()).sum::<f64>();
         let theta = self.incidence_deg.to_radians();
-        let field = Field::new(&table, theta, photons / maps.nodes.len() as f64);
+        let field = Field::new(&table, theta, maps.photons() / maps.nodes.len() as f64);
 
         let (w, h) = (width * SUPERSAMPLE, height * SUPERSAMPLE);
         let mut canvas = Canvas::new(w, h, PAPER);
