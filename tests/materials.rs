@@ -465,3 +465,20 @@ fn fog_in_any_part_loses_nothing() {
         }
     }
 }
+
+#[test]
+fn the_example_species_are_sound_and_colored() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/species");
+    let mut seen = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            let species = vair::species::load(path.to_str().unwrap(), &[]).unwrap();
+            let structure = &species.classes[0].stations[0].structure;
+            assert!(structure.is_colored(), "{}", path.display());
+            Fiber::build(structure, 0).unwrap();
+            seen += 1;
+        }
+    }
+    assert_eq!(seen, 3);
+}

@@ -226,7 +226,7 @@ pub fn find_or_bake(
     if !structure.is_colored() {
         let baked = gray(structure, provenance)?;
         return Ok(Baked {
-            table: Undyed::Gray(baked.table),
+            table: Undyed::Gray(Box::new(baked.table)),
             complete: baked.complete,
         });
     }

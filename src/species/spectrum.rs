@@ -177,9 +177,9 @@ mod tests {
         ];
         for (name, color) in expected {
             let metal = metal(name).unwrap();
-            for c in 0..3 {
+            for (c, expected) in color.into_iter().enumerate() {
                 let found = fresnel::conductor(1.0, metal.index[c], metal.extinction[c]);
-                assert!((found - color[c]).abs() < 0.04, "{name} {c}: {found}");
+                assert!((found - expected).abs() < 0.04, "{name} {c}: {found}");
             }
         }
     }

@@ -6,7 +6,7 @@ use super::{ScatterMaps, StructureTable, TableError};
 #[derive(Clone, Debug, PartialEq)]
 pub enum Undyed {
     /// Materials are gray: one table serves all colors.
-    Gray(StructureTable),
+    Gray(Box<StructureTable>),
     /// Materials differ by color: a table each for R, G and B, alike but for what the materials do.
     Colored(Box<[StructureTable; 3]>),
 }

@@ -64,6 +64,10 @@ def check(path):
         if abs(emitted[0] / UNITS_PER_PHOTON - number(header, "photons")) > 1e-6:
             yield f"{name}: {emitted[0]} units are not {number(header, 'photons')} photons"
 
+        entries = len(channels) if structure else head["vair:bakes"]
+        if len(emitted) != entries:
+            yield f"{name}: {len(emitted)} ledgers, not {entries}"
+
         albedo = floats(header, "albedo")
         for k, channel in enumerate(channels):
             flux = maps[channel].astype(float)
