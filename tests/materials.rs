@@ -42,7 +42,7 @@ fn cylinder(materials: Materials) -> Structure {
 fn shaggy(materials: Materials) -> Structure {
     Structure {
         cuticle: Cuticle {
-            pattern: CuticlePattern::Mosaic,
+            pattern: CuticlePattern::built_in("mosaic").unwrap(),
             pitch_um: 9.0,
             height_um: 1.5,
             around: 6,
