@@ -20,6 +20,7 @@ pub mod bsdf;
 pub mod cli;
 pub mod color;
 pub mod fiber;
+pub mod gallery;
 pub mod groom;
 pub mod image;
 pub mod io;

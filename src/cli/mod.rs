@@ -9,6 +9,7 @@ mod cache;
 mod console;
 mod failure;
 mod fiber;
+mod gallery;
 mod render;
 mod schema;
 mod signals;
@@ -47,6 +48,8 @@ enum Command {
     Table(table::Args),
     /// Show or clear the cache of baked tables.
     Cache(cache::Args),
+    /// The library in pictures: a contact sheet, or pages of Markdown.
+    Gallery(gallery::Args),
     /// Print the JSON Schema of a file format.
     Schema(schema::Args),
 }
@@ -95,6 +98,7 @@ fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
         Command::Schema(args) => schema::run(&args, console),
         Command::Species(args) => species::run(&args, console),
         Command::Table(args) => table::run(&args, console),
+        Command::Gallery(args) => gallery::run(&args, console),
         Command::Fiber(args) => fiber::run(&args, console),
         Command::Bake(args) => bake::run(&args, console),
         Command::Cache(args) => cache::run(&args, console),

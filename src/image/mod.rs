@@ -3,6 +3,7 @@
 mod canvas;
 mod denoise;
 mod film;
+mod palette;
 mod png;
 mod view;
 

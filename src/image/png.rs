@@ -15,13 +15,7 @@ pub fn write_png(
     text: &[(&str, &str)],
 ) -> Result<(), FileError> {
     let mut file = AtomicFile::create(path)?;
-    encode(&mut file, width, height, rgb, text).map_err(|e| {
-        let source = match e {
-            png::EncodingError::IoError(e) => e,
-            other => std::io::Error::new(std::io::ErrorKind::InvalidInput, other),
-        };
-        FileError::new("write", path, source)
-    })?;
+    encode(&mut file, width, height, rgb, text).map_err(|e| file_error(path, e))?;
     file.commit()
 }
 
@@ -42,4 +36,35 @@ fn encode(
     let mut writer = encoder.write_header()?;
     writer.write_image_data(rgb)?;
     writer.finish()
+}
+
+/// Writes picture data of any 8-bit kind, compressed as well as it goes.
+///
+/// * `kind`: sets color type, palette and filter.
+pub(super) fn write_encoded(
+    path: &Path,
+    (width, height): (u32, u32),
+    data: &[u8],
+    kind: impl FnOnce(&mut png::Encoder<'_, &mut AtomicFile>),
+) -> Result<(), FileError> {
+    let mut file = AtomicFile::create(path)?;
+    let encoded = (|| {
+        let mut encoder = png::Encoder::new(&mut file, width, height);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::High);
+        kind(&mut encoder);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(data)?;
+        writer.finish()
+    })();
+    encoded.map_err(|e| file_error(path, e))?;
+    file.commit()
+}
+
+fn file_error(path: &Path, error: png::EncodingError) -> FileError {
+    let source = match error {
+        png::EncodingError::IoError(e) => e,
+        other => std::io::Error::new(std::io::ErrorKind::InvalidInput, other),
+    };
+    FileError::new("write", path, source)
 }

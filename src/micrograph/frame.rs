@@ -156,7 +156,7 @@ pub(super) fn bar(
 }
 
 /// Breaks a text into lines of at most `columns` characters.
-pub(super) fn wrap(text: &str, columns: usize) -> Vec<String> {
+pub(crate) fn wrap(text: &str, columns: usize) -> Vec<String> {
     let mut lines: Vec<String> = vec![String::new()];
     for word in text.split(' ') {
         if let Some(line) = lines.last_mut() {

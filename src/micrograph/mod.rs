@@ -24,6 +24,7 @@ mod specimen;
 mod tests;
 
 pub use caption::{Facts, tilt_deg};
+pub(crate) use frame::wrap;
 pub use light::Microscope;
 pub use pigment::absorption_at;
 

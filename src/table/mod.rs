@@ -18,7 +18,7 @@ pub use self::exr::{FORMAT, TableFile};
 pub use error::TableError;
 pub use maps::ScatterMaps;
 pub use nodes::{Mode, Nodes};
-pub use plot::Plot;
+pub use plot::{Plot, draw_lobe};
 pub use scatter::{Lobe, ScatterTable};
 pub use structure::{Ledger, PHOTON, Provenance, StructureTable};
 pub use undyed::Undyed;

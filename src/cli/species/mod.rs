@@ -7,6 +7,8 @@ mod prose;
 mod report;
 mod show;
 
+pub(super) use show::page as field_guide;
+
 use super::{Console, Failure};
 use crate::blame::Blame;
 use crate::species::{Origins, Species};

@@ -33,7 +33,8 @@ pub(super) fn run(args: &Args, as_json: bool) -> Result<(), Failure> {
     }
 }
 
-fn page(species: &Species, origins: &Origins) -> String {
+/// The page of an animal as text.
+pub(in crate::cli) fn page(species: &Species, origins: &Origins) -> String {
     let mut page = title(species);
     for class in &species.classes {
         description(&mut page, class);

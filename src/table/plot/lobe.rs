@@ -12,7 +12,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Steps of the mesh in inclination; twice as many in azimuth. Finer than the texels of a table of
 /// 64, so that edges are the table's.
-const STEPS: usize = 360;
+pub(super) const FINE: usize = 360;
+
+/// The same for small pictures, where a step is a pixel or two.
+pub(super) const COARSE: usize = 120;
 
 /// Directions averaged for one corner of the mesh, along each axis.
 const TAPS: i32 = 5;
@@ -24,11 +27,24 @@ const FIBER: Vec3 = Vec3::new(0.78, 0.67, 0.56);
 const ARROW: Vec3 = Vec3::new(0.25, 0.62, 0.98);
 
 pub(super) fn draw(canvas: &mut Canvas, pen: &Pen, area: Area, field: &Field, gray: bool) {
-    // Seen across the plane of incidence, a little from above and from the light's side.
-    let mut view = View::new(area, Vec3::new(0.45, -1.0, 0.42), REACH);
+    let view = solid(canvas, pen, area, field, gray, FINE);
     let title = area.min + glam::Vec2::new(2.0 * pen.line(), -0.4 * pen.line());
     let caption = "lobe: distance is the root of S cos θ";
     pen.left(canvas, title, caption, INK);
+    labels(canvas, pen, &view);
+}
+
+/// The lobe, fiber and query without letters.
+pub(super) fn solid(
+    canvas: &mut Canvas,
+    pen: &Pen,
+    area: Area,
+    field: &Field,
+    gray: bool,
+    steps: usize,
+) -> View {
+    // Seen across the plane of incidence, a little from above and from the light's side.
+    let mut view = View::new(area, Vec3::new(0.45, -1.0, 0.42), REACH);
     axes(canvas, pen, &mut view);
     let z = Vec3::Z;
     cone(canvas, &mut view, [-1.1 * z, 1.1 * z], [0.022; 2], FIBER);
@@ -37,8 +53,8 @@ pub(super) fn draw(canvas: &mut Canvas, pen: &Pen, area: Area, field: &Field, gr
     let q = field.query;
     cone(canvas, &mut view, [1.3 * q, 1.1 * q], [0.012; 2], ARROW);
     cone(canvas, &mut view, [1.12 * q, 1.02 * q], [0.034, 0.0], ARROW);
-    surface(canvas, &mut view, field, gray);
-    labels(canvas, pen, &view);
+    surface(canvas, &mut view, field, gray, steps);
+    view
 }
 
 /// One corner of the mesh.
@@ -50,18 +66,18 @@ struct Corner {
     tint: Vec3,
 }
 
-fn surface(canvas: &mut Canvas, view: &mut View, field: &Field, gray: bool) {
-    let columns = 2 * STEPS;
-    let corners: Vec<Corner> = (0..(STEPS + 1) * columns)
+fn surface(canvas: &mut Canvas, view: &mut View, field: &Field, gray: bool, steps: usize) {
+    let columns = 2 * steps;
+    let corners: Vec<Corner> = (0..(steps + 1) * columns)
         .into_par_iter()
         .map(|i| {
-            let theta = FRAC_PI_2 - PI * (i / columns) as f64 / STEPS as f64;
+            let theta = FRAC_PI_2 - PI * (i / columns) as f64 / steps as f64;
             let phi = TAU * (i % columns) as f64 / columns as f64;
             corner(field, theta, phi)
         })
         .collect();
     let at = |row: usize, column: usize| corners[row * columns + column % columns];
-    for row in 0..STEPS {
+    for row in 0..steps {
         for column in 0..columns {
             let quad = [
                 at(row, column),

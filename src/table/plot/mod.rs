@@ -115,6 +115,54 @@ impl Plot<'_> {
     }
 }
 
+/// The lobe alone, in the color of its light, without letters.
+///
+/// * `incidence_deg`: inclination of the query direction, degrees in -90..=90.
+/// * `size`: width and height in pixels, 32 to 4096.
+/// * Errors: inclination or size out of range, a table whose face edge is no power of two.
+pub fn draw_lobe(
+    maps: &ScatterMaps,
+    incidence_deg: f64,
+    (width, height): (usize, usize),
+) -> Result<Canvas, TableError> {
+    let possible = 32..=4096;
+    if !possible.contains(&width) || !possible.contains(&height) {
+        let what = format!("a lobe of {width}x{height} pixels; 32x32 to 4096x4096 are possible");
+        return Err(TableError::Request(what));
+    }
+    if !(-90.0..=90.0).contains(&incidence_deg) {
+        let what = format!("an incidence of {incidence_deg} degrees; -90 to 90 are possible");
+        return Err(TableError::Request(what));
+    }
+    if !maps.res.is_power_of_two() {
+        let what = format!(
+            "a table of {} texels a face edge; powers of two are possible",
+            maps.res
+        );
+        return Err(TableError::Request(what));
+    }
+    let table = ScatterTable::new(maps.nodes.clone(), maps.res, maps.rgb.clone());
+    let photons = maps.ledger.iter().map(|l| l.photons()).sum::<f64>();
+    let field = Field::new(
+        &table,
+        incidence_deg.to_radians(),
+        photons / maps.nodes.len() as f64,
+    );
+    let (w, h) = (width * SUPERSAMPLE, height * SUPERSAMPLE);
+    let mut canvas = Canvas::new(w, h, PAPER);
+    let area = Area {
+        min: Vec2::ZERO,
+        max: Vec2::new(w as f32, h as f32),
+    };
+    let steps = if height <= 400 {
+        lobe::COARSE
+    } else {
+        lobe::FINE
+    };
+    lobe::solid(&mut canvas, &Pen::new(1.0), area, &field, false, steps);
+    Ok(canvas.downsampled(SUPERSAMPLE))
+}
+
 /// A rectangle of the picture, pixels.
 #[derive(Clone, Copy, Debug)]
 struct Area {

@@ -1,0 +1,60 @@
+//! A piece of fur in the studio.
+
+use super::{GalleryError, Studio};
+use crate::assembly;
+use crate::groom::{self, GroomSettings};
+use crate::image::{Canvas, ViewTransform, denoise};
+use crate::progress::Silent;
+use crate::render::{RenderJob, Sampler};
+use crate::scene::{Backdrop, Environment, Scene, SceneParts, View};
+use crate::skin;
+use crate::species::Species;
+use glam::Vec3;
+
+pub(super) fn draw(
+    studio: &Studio,
+    species: &Species,
+    (width, height): (usize, usize),
+) -> Result<Canvas, GalleryError> {
+    let cancel = studio.cancel;
+    let bake = studio.bake();
+    let materials = assembly::materials(species, &bake, studio.cache, &Silent, cancel)?;
+    let skin = skin::load("swatch")?;
+    let settings = GroomSettings {
+        strands: Some(studio.quality.strands),
+        seed: 0,
+    };
+    let groom = groom::grow(&skin, species, &settings, &Silent, cancel)?;
+    let view = View {
+        zoom: 1.5,
+        ..View::from_direction(skin.view)
+    };
+    let color = Vec3::from_array(species.skin_color.map(|c| c as f32));
+    let scene = Scene::build(SceneParts {
+        groom: &groom,
+        materials,
+        skin: Some((&skin, color)),
+        environment: Environment::studio().turned(view.yaw_deg),
+        backdrop: Backdrop::default(),
+        ground: None,
+        view,
+    })?;
+    let job = RenderJob {
+        resolution: [width as u32, height as u32],
+        crop: None,
+        spp: studio.quality.swatch,
+        seed: 0,
+        sampler: Sampler::Qsir,
+        time_limit: None,
+    };
+    let film = job.run(&scene, &Silent, cancel)?;
+    if !film.report.complete {
+        return Err(GalleryError::Stopped);
+    }
+    let transform = ViewTransform::default();
+    let mut canvas = Canvas::new(width, height, Vec3::ZERO);
+    for (i, pixel) in denoise(&film).pixels.iter().enumerate() {
+        canvas.set(i % width, i / width, transform.display(pixel.radiance));
+    }
+    Ok(canvas)
+}
