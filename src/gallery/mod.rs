@@ -84,8 +84,11 @@ pub struct Quality {
     pub micrograph: u32,
     /// Samples a pixel in transmitted light, which is noisier.
     pub light: u32,
-    /// Photons of every table.
+    /// Photons of every table, and texels along a face edge of it: four times the photons or half
+    /// the edge have the same noise a texel.
     pub photons: u64,
+    /// See above; a power of two.
+    pub face: usize,
     /// Strands of a swatch.
     pub strands: usize,
     /// Samples a pixel of a swatch.
@@ -96,16 +99,18 @@ impl Quality {
     /// About fifteen seconds an animal on two cores.
     pub const PREVIEW: Self = Self {
         micrograph: 9,
-        light: 24,
-        photons: 1_000_000,
-        strands: 12_000,
-        swatch: 24,
+        light: 16,
+        photons: 300_000,
+        face: 32,
+        strands: 10_000,
+        swatch: 12,
     };
     /// About two minutes an animal on two cores; the tables are those of `vair render`.
     pub const FULL: Self = Self {
         micrograph: 36,
         light: 192,
         photons: 3_000_000,
+        face: 64,
         strands: 60_000,
         swatch: 128,
     };
@@ -247,6 +252,7 @@ impl Studio<'_> {
     fn bake(&self) -> Settings {
         Settings {
             photons: self.quality.photons,
+            face: self.quality.face,
             ..Settings::cone()
         }
     }

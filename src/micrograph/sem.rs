@@ -23,6 +23,8 @@ const HIGHEST_YIELD: f64 = 6.0;
 /// How far from an edge electrons still leave through its other side, micrometers. Coated hair at
 /// 5 to 10 kV has a few tenths; below a tenth margins vanish between pixels, above one they merge.
 const EDGE_UM: f64 = 0.5;
+/// In pictures of low magnification a margin is at least so many pixels wide, as the beam is.
+const EDGE_PIXELS: f64 = 1.4;
 /// Gain of a point right at an edge.
 const EDGE: f64 = 3.0;
 /// The empty stage.
@@ -52,13 +54,14 @@ pub(super) fn draw(
     let far = 4.0 * fiber.bounding_radius_um();
     let half = 0.5 * area.1 as f64;
     let specimen = Specimen::whole(fiber);
+    let edge_um = EDGE_UM.max(EDGE_PIXELS * um_per_pixel);
     let up = DVec3::X;
     let detector = DETECTOR.x * dir.cross(up) + DETECTOR.y * up - DETECTOR.z * dir;
     let canvas = raster.draw(area, |sample| {
         // Oblique: true to scale along the fiber.
         let at = DVec3::new(half - sample.y, 0.0, sample.x) * um_per_pixel;
         let signal = match specimen.look(at - far * dir, dir) {
-            Some(seen) => electrons(&specimen, &seen, dir, detector, sample),
+            Some(seen) => electrons(&specimen, &seen, [dir, detector], edge_um, sample),
             None => STAGE,
         };
         // The photomultiplier saturates softly.
@@ -73,13 +76,13 @@ pub(super) fn draw(
 fn electrons(
     specimen: &Specimen,
     seen: &Seen,
-    dir: DVec3,
-    detector: DVec3,
+    [dir, detector]: [DVec3; 2],
+    edge_um: f64,
     sample: &mut Sample,
 ) -> f64 {
     let cos = -seen.normal.dot(dir);
     let secant = (1.0 / cos.max(1e-6)).min(HIGHEST_YIELD);
-    let edge = EDGE * edge_nearness(specimen.fiber, seen, sample.rng.uniform());
+    let edge = EDGE * edge_nearness(specimen.fiber, seen, edge_um, sample.rng.uniform());
     let [u, v] = sample.pair;
     let open = specimen.is_open(seen, u, v);
     let collected = FROM_GAPS + (1.0 - FROM_GAPS) * f64::from(u8::from(open));
@@ -88,8 +91,8 @@ fn electrons(
 }
 
 /// 1 for a path just under the surface that comes out at once, 0 for one that does not within
-/// [`EDGE_UM`]. Round shafts have no edges in this sense.
-fn edge_nearness(fiber: &Fiber, seen: &Seen, u: f64) -> f64 {
+/// `edge_um`. Round shafts have no edges in this sense.
+fn edge_nearness(fiber: &Fiber, seen: &Seen, edge_um: f64, u: f64) -> f64 {
     let (x, y) = seen.normal.any_orthonormal_pair();
     let (sin, cos) = (TAU * u).sin_cos();
     let along = cos * x + sin * y;
@@ -99,7 +102,7 @@ fn edge_nearness(fiber: &Fiber, seen: &Seen, u: f64) -> f64 {
         return 1.0;
     }
     match fiber.next_hit(below, along, region, None) {
-        Some(hit) if hit.to == Region::Outside => (1.0 - hit.t / EDGE_UM).max(0.0),
+        Some(hit) if hit.to == Region::Outside => (1.0 - hit.t / edge_um).max(0.0),
         _ => 0.0,
     }
 }
