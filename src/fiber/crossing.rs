@@ -163,7 +163,8 @@ impl Crossing<'_> {
     /// Roots of chords from the start to the last estimate: slower, and sure.
     #[cold]
     fn chords(&self, mut x: f64) -> f64 {
-        for _ in 0..8 {
+        // A handful for most; where lifted scales twist the strip each wins one digit only.
+        for _ in 0..40 {
             if x <= 0.0 {
                 break;
             }

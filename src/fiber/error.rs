@@ -16,6 +16,9 @@ pub enum FiberError {
         /// Minor semi-axis.
         radius_um: f64,
     },
+    /// A section that a ray from its center leaves more than once.
+    #[error("the section folds over itself: lower `bend` or `dent`, or the aspect")]
+    SectionFolds,
     /// The medulla reaches the cuticle.
     #[error(
         "the medulla ({medulla_um:.2} um from the axis) reaches the cuticle, whose lowest point is \

@@ -116,7 +116,7 @@ impl<'a> Window<'a> {
 
     /// How far the ray stays in the cell and where it leaves.
     #[inline]
-    fn leave(&self, turn: f64, on: StartOn, limit: f64) -> (f64, Exit) {
+    fn leave(&self, turn: f64, on: StartOn, limit: f64, bare: bool) -> (f64, Exit) {
         let (mut length, mut exit) = (limit.max(0.0), Exit::Limit);
         if turn > 0.0 {
             if self.db < 0.0 && self.b < -self.db * length {
@@ -124,6 +124,9 @@ impl<'a> Window<'a> {
             }
         } else if turn < 0.0 && self.da < 0.0 && self.a < -self.da * length {
             (length, exit) = (self.a.max(0.0) / -self.da, Exit::PreviousSector);
+        }
+        if bare {
+            return (length, exit);
         }
         if length == f64::INFINITY {
             // An axial ray meets neither planes nor limit: only the strip's ends count.
@@ -188,7 +191,7 @@ impl Scales {
                 p,
                 ray,
             );
-            let (length, exit) = window.leave(turn, on, limit - t);
+            let (length, exit) = window.leave(turn, on, limit - t, self.bare);
             if length == f64::INFINITY {
                 return March::Lost;
             }

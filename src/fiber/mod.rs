@@ -15,6 +15,7 @@ mod march;
 mod medulla;
 mod mesh;
 mod optics;
+mod outline;
 mod packing;
 mod pattern;
 mod scales;
@@ -85,6 +86,7 @@ pub struct Fiber {
     fusi: Option<Box<Bodies>>,
     pigment: Pigment,
     period_um: f64,
+    bounding_radius_um: f64,
     optics: OpticalParts,
 }
 
@@ -92,12 +94,12 @@ impl Fiber {
     /// Builds the geometry of a structure. `seed` places scales and voids.
     ///
     /// # Errors
-    /// When the parts do not fit into each other: scales higher than a third of the radius, a
+    /// When the parts do not fit into each other: a section that folds over itself, scales higher than a third of the radius, a
     /// medulla that reaches the cuticle, septa thicker than the rungs' distance, cells wider than the
     /// medulla, films thicker than globules, a froth denser than spheres can be packed, fusi in a
     /// cortex thinner than they are.
     pub fn build(structure: &Structure, seed: u64) -> Result<Self, FiberError> {
-        let section = Section::new(structure.diameter_um, structure.aspect);
+        let section = Section::of(structure)?;
         let cuticle = &structure.cuticle;
         if cuticle.pattern != CuticlePattern::Smooth && cuticle.height_um > section.b / 3.0 {
             return Err(FiberError::ScalesTooHigh {
@@ -105,17 +107,25 @@ impl Fiber {
                 radius_um: section.b,
             });
         }
-        let flat = cuticle.height_um <= 0.0;
-        let lines = section.lines(section.line_count());
-        let pattern = (!flat)
-            .then(|| Pattern::new(cuticle, &lines, section.circumference(), seed))
-            .flatten();
-        let (surface, period_um) = match &pattern {
-            None => (Surface::Smooth, Medulla::period_um(structure, None)),
-            Some(pattern) => (
-                Surface::Scales(Box::new(Scales::new(pattern, &lines))),
-                Medulla::period_um(structure, Some(pattern.period_um)),
-            ),
+        let flat = cuticle.height_um <= 0.0 || cuticle.pattern == CuticlePattern::Smooth;
+        let lines = section.lines(section.line_count(flat));
+        let mut pattern = if flat {
+            None
+        } else {
+            Pattern::new(cuticle, &lines, section.circumference(), seed)
+        };
+        let period_um = Medulla::period_um(structure, pattern.as_ref().map(|p| p.period_um));
+        if pattern.is_none() && !section.is_ellipse() {
+            pattern = Some(Pattern::bare(&lines, period_um));
+        }
+        let surface = pattern.map_or(Surface::Smooth, |pattern| {
+            Surface::Scales(Box::new(Scales::new(&pattern, &lines)))
+        });
+        let bounding_radius_um = match &surface {
+            Surface::Scales(scales) if !section.is_ellipse() => {
+                scales.bounding_um([section.a, section.b])
+            }
+            _ => section.a * surface.rho_max(),
         };
         let medulla = Medulla::new(structure, &section, surface.rho_min(), period_um, seed)?;
         let cortex = (medulla.ratio, surface.rho_min());
@@ -137,6 +147,7 @@ impl Fiber {
             fusi: fusi.map(Box::new),
             pigment,
             period_um,
+            bounding_radius_um,
             optics,
         })
     }
@@ -160,14 +171,14 @@ impl Fiber {
         self.period_um
     }
 
-    /// Radius of the smallest cylinder about z that holds the fiber, micrometers.
+    /// Radius of a cylinder about z that holds the fiber closely, micrometers.
     pub fn bounding_radius_um(&self) -> f64 {
-        self.section.a * self.surface.rho_max()
+        self.bounding_radius_um
     }
 
-    /// Semi-axes of the mean section along x and y, micrometers.
+    /// Half the extent of the mean section along x and y, micrometers: its semi-axes.
     pub fn semi_axes_um(&self) -> [f64; 2] {
-        [self.section.a, self.section.b]
+        self.section.half_extents()
     }
 
     /// Whether a point is within the outline of the medulla.

@@ -1,7 +1,8 @@
 //! The scaled surface as closed geometry: sectors between axial half planes, each with a stack of
 //! strips along z.
 //!
-//! In the unit-circle frame the surface of a strip is `rho = 1 + E(u, z)`; `u = a / (a + b)` from the
+//! In the unit-circle frame the surface of a strip is `rho = 1 + E(u, z)`, E the shape of the section
+//! and the scales on it; `u = a / (a + b)` from the
 //! distances a and b to the sector's two half planes, so that neighbors agree on their common plane
 //! without any angle. `E` is linear in z and in u. A strip ends at the ruled surface
 //! `z = end(u)`; where the next strip's surface is lower or higher the difference is a riser, an
@@ -66,6 +67,8 @@ pub(super) struct Scales {
     inverse_period: f64,
     pub(super) sectors: Vec<Sector>,
     strips: Vec<Strip>,
+    /// Nothing changes along z: a section of any shape without scales.
+    pub(super) bare: bool,
     /// Sector that holds the start of each step of the pseudo-angle.
     start_of_angle: Vec<u16>,
     /// Radii that enclose the surface, with a margin above rounding.
@@ -104,7 +107,7 @@ impl Scales {
             }
             start_of_angle.push(sector as u16);
         }
-        let (mut lowest, mut highest) = (0.0f64, 0.0f64);
+        let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
         for s in &strips {
             for side in 0..2 {
                 for z in [s.begin[side], s.end[side]] {
@@ -120,12 +123,36 @@ impl Scales {
         Self {
             period: pattern.period_um,
             inverse_period: 1.0 / pattern.period_um,
+            bare: strips.len() == sectors.len() && strips.iter().all(|s| s.slope == [0.0; 2]),
             sectors,
             strips,
             start_of_angle,
             rho_min: 1.0 + lowest - margin,
             rho_max: 1.0 + highest + margin,
         }
+    }
+
+    /// Radius of a cylinder about the axis that holds the surface, micrometers.
+    ///
+    /// * `semi`: semi-axes of the frame.
+    pub(super) fn bounding_um(&self, semi: [f64; 2]) -> f64 {
+        let highest = |sector: &Sector| {
+            let strips = &self.strips[sector.first as usize..][..sector.count as usize];
+            let ends = |s: &Strip, side: usize| {
+                let at = |z: f64| s.height[side] + s.slope[side] * z;
+                at(s.begin[side]).max(at(s.end[side]))
+            };
+            (0..2)
+                .map(|side| {
+                    let plane = sector.planes[side];
+                    let out = (semi[0] * plane.cos).hypot(semi[1] * plane.sin);
+                    let highest = strips.iter().map(|s| ends(s, side));
+                    out * (1.0 + highest.fold(f64::NEG_INFINITY, f64::max))
+                })
+                .fold(0.0, f64::max)
+        };
+        // Between two planes the surface may bulge by the sagitta, half the angle squared.
+        1.002 * self.sectors.iter().map(highest).fold(0.0, f64::max)
     }
 
     /// The strip of a cell.
@@ -220,6 +247,9 @@ impl Scales {
     /// Walks from a near strip of the right sector to the one that holds `z` at `u`.
     #[inline]
     pub(super) fn settle(&self, mut cell: Cell, u: f64, z: f64) -> Cell {
+        if self.bare {
+            return cell;
+        }
         while z - cell.shift > at(self.strip(cell).end, u) {
             cell = self.above(cell);
         }
@@ -332,7 +362,10 @@ fn join(pattern: &Pattern, lines: &[Line], i: usize, strips: &mut Vec<Strip>) {
         strips.push(Strip {
             begin,
             end,
-            height: tiles.map(|((height_um, _), support_um)| height_um / support_um),
+            height: std::array::from_fn(|side| {
+                let ((height_um, _), support_um) = tiles[side];
+                lines[pair[side]].rho - 1.0 + height_um / support_um
+            }),
             slope: tiles.map(|((_, slope), support_um)| slope / support_um),
         });
     }
@@ -341,7 +374,10 @@ fn join(pattern: &Pattern, lines: &[Line], i: usize, strips: &mut Vec<Strip>) {
 impl Section {
     /// How many lines describe a surface well: about one a micrometer, which still shows the
     /// crenation of margins (about 3 um); fewer on fine fibers, bounded to keep the tables in cache.
-    pub(super) fn line_count(&self) -> usize {
-        (self.circumference().round() as usize).clamp(96, 320)
+    ///
+    /// * `bare`: without scales the shape alone is to be smooth, and costs one strip a line.
+    pub(super) fn line_count(&self, bare: bool) -> usize {
+        let least = if bare { 320 } else { 96 };
+        (self.circumference().round() as usize).clamp(least, 320)
     }
 }

@@ -1,17 +1,23 @@
-//! The elliptical cross-section and the affine frame in which it is the unit circle.
+//! The cross-section and the affine frame in which its ellipse is the unit circle.
 
-use glam::DVec3;
+use super::FiberError;
+use super::outline::Outline;
+use crate::species::Structure;
+use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// Semi-axes of the section. Dividing x and y by them makes the section the unit circle: rays stay
-/// straight and keep their parameter, so everything is traced there.
-#[derive(Clone, Copy, Debug)]
+/// The ellipse of the section's area and aspect. Dividing x and y by its semi-axes makes it the unit
+/// circle: rays stay straight and keep their parameter, so everything is traced there. Other shapes
+/// are a radius about 1 in that frame.
+#[derive(Clone, Debug)]
 pub(super) struct Section {
     /// Semi-axis along x, the major one, micrometers.
     pub(super) a: f64,
     /// Semi-axis along y, micrometers.
     pub(super) b: f64,
     inverse: [f64; 2],
+    /// `None` for the ellipse itself.
+    outline: Option<Outline>,
 }
 
 /// A ray in the unit-circle frame: x and y in units of the semi-axes, z and t in micrometers.
@@ -36,14 +42,29 @@ pub(super) struct Line {
     /// Cosine and sine of the half plane's angle in the unit-circle frame.
     pub(super) cos: f64,
     pub(super) sin: f64,
+    /// Radius of the section here, in units of the ellipse's.
+    pub(super) rho: f64,
     /// Position round the fiber by arc length, 0..1.
     pub(super) turn: f64,
-    /// Distance of the tangent plane from the axis, micrometers: a height over it is the height
-    /// along the normal, so that scales are equally high all round a flat fiber.
+    /// What a step outward by one radius of the ellipse is along the normal, micrometers: a height
+    /// over it is the height along the normal, so that scales are equally high all round a flat fiber.
     pub(super) support_um: f64,
 }
 
 impl Section {
+    /// The section of a structure.
+    ///
+    /// # Errors
+    /// A shape that folds over itself.
+    pub(super) fn of(structure: &Structure) -> Result<Self, FiberError> {
+        Ok(Self {
+            outline: Outline::new(structure.section, structure.aspect)?,
+            ..Self::new(structure.diameter_um, structure.aspect)
+        })
+    }
+
+    /// An ellipse.
+    ///
     /// * `diameter_um`: geometric mean of the axes; `aspect`: major over minor axis.
     pub(super) fn new(diameter_um: f64, aspect: f64) -> Self {
         let radius = 0.5 * diameter_um;
@@ -52,6 +73,7 @@ impl Section {
             a,
             b,
             inverse: [1.0 / a, 1.0 / b],
+            outline: None,
         }
     }
 
@@ -97,10 +119,46 @@ impl Section {
         if n.dot(dir) > 0.0 { -n } else { n }
     }
 
-    /// Arc length of the quarter-turn-free parameter, micrometers per radian.
+    /// Whether it is an ellipse.
+    pub(super) fn is_ellipse(&self) -> bool {
+        self.outline.is_none()
+    }
+
+    /// Radius of the section at an angle of the unit-circle frame, in units of the ellipse's.
+    pub(super) fn rho(&self, psi: f64) -> f64 {
+        self.outline.as_ref().map_or(1.0, |o| o.at(psi))
+    }
+
+    /// Half the extent along x and y, micrometers.
+    pub(super) fn half_extents(&self) -> [f64; 2] {
+        let Some(outline) = &self.outline else {
+            return [self.a, self.b];
+        };
+        let points = (0..4096).map(|i| {
+            let psi = TAU * f64::from(i) / 4096.0;
+            outline.at(psi) * DVec2::new(self.a * psi.cos(), self.b * psi.sin())
+        });
+        let (low, high) = points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| {
+            (l.min(p), h.max(p))
+        });
+        (0.5 * (high - low)).to_array()
+    }
+
+    /// Change of the position per radian of the unit-circle frame, micrometers.
+    fn tangent(&self, psi: f64) -> DVec2 {
+        let along = |psi: f64| DVec2::new(-self.a * psi.sin(), self.b * psi.cos());
+        let Some(outline) = &self.outline else {
+            return along(psi);
+        };
+        let out = DVec2::new(self.a * psi.cos(), self.b * psi.sin());
+        let step = 2e-3;
+        let change = (outline.at(psi + step) - outline.at(psi - step)) / (2.0 * step);
+        outline.at(psi) * along(psi) + change * out
+    }
+
+    /// Arc length per radian of the unit-circle frame, micrometers.
     fn speed(&self, psi: f64) -> f64 {
-        let (sin, cos) = psi.sin_cos();
-        (self.a * sin).hypot(self.b * cos)
+        self.tangent(psi).length()
     }
 
     /// Circumference, micrometers. The trapezoid rule converges geometrically for a period.
@@ -134,11 +192,14 @@ impl Section {
 
     fn line(&self, psi: f64, turn: f64) -> Line {
         let (sin, cos) = psi.sin_cos();
+        let tangent = self.tangent(psi);
+        let out = DVec2::new(self.a * cos, self.b * sin);
         Line {
             cos,
             sin,
+            rho: self.rho(psi),
             turn,
-            support_um: self.a * self.b / self.speed(psi),
+            support_um: out.perp_dot(tangent) / tangent.length(),
         }
     }
 }

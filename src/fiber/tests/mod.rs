@@ -2,11 +2,12 @@
 
 mod kinds;
 mod scales;
+mod sections;
 mod shapes;
 mod walk;
 
 use super::Fiber;
-use crate::species::{Cuticle, CuticlePattern, Medulla, MedullaKind, Structure};
+use crate::species::{Cuticle, CuticlePattern, Margin, Medulla, MedullaKind, Section, Structure};
 
 pub(super) fn structure(
     diameter_um: f64,
@@ -88,6 +89,53 @@ pub(super) fn flat_seal() -> Structure {
     )
 }
 
+/// Waisted, with deep margins.
+pub(super) fn rabbit_guard() -> Structure {
+    let medium = MedullaKind::Medium {
+        scattering_per_um: 0.05,
+        asymmetry: 0.5,
+    };
+    let scales = ("single-chevron", 8.0, 0.5, 2);
+    Structure {
+        section: Section::DumbBell,
+        ..structure(70.0, 2.4, scales, (0.6, medium))
+    }
+}
+
+/// Bent, worn and damaged.
+pub(super) fn mouse_guard() -> Structure {
+    let scales = ("lanceolate-petal", 8.0, 0.4, 5);
+    let mut s = structure(45.0, 1.7, scales, (0.0, MedullaKind::None));
+    s.section = Section::ConcavoConvex { bend: 0.4 };
+    s.cuticle.margin = Margin::Dentate;
+    s.cuticle.wear = 0.3;
+    s.cuticle.lifted = 0.2;
+    s
+}
+
+/// A shape without scales.
+pub(super) fn bean() -> Structure {
+    Structure {
+        section: Section::Bean { dent: 0.3 },
+        aspect: 1.6,
+        ..glass()
+    }
+}
+
+pub(super) fn otter_under() -> Structure {
+    let scales = ("otter-fin", 16.0, 0.8, 4);
+    structure(12.0, 1.0, scales, (0.0, MedullaKind::None))
+}
+
+pub(super) fn worn_bear() -> Structure {
+    let mut s = bear_guard();
+    s.cuticle.pattern = CuticlePattern::built_in("torn-paper").unwrap();
+    s.cuticle.wear = 0.5;
+    s.cuticle.lifted = 0.3;
+    s.medulla = Medulla::default();
+    s
+}
+
 pub(super) fn all() -> Vec<(&'static str, Fiber)> {
     let mut structures = vec![
         ("glass", glass()),
@@ -96,6 +144,11 @@ pub(super) fn all() -> Vec<(&'static str, Fiber)> {
         ("mink under", mink_under()),
         ("chinchilla", chinchilla()),
         ("flat seal", flat_seal()),
+        ("rabbit guard", rabbit_guard()),
+        ("mouse guard", mouse_guard()),
+        ("bean", bean()),
+        ("otter under", otter_under()),
+        ("worn bear", worn_bear()),
     ];
     structures.extend(kinds::structures());
     structures

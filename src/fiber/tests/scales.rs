@@ -79,7 +79,7 @@ fn mean_radius_stays_the_structures() {
         let mut s = super::fox_guard();
         s.cuticle.pattern = CuticlePattern::built_in(pattern).unwrap();
         let section = Section::new(s.diameter_um, s.aspect);
-        let lines = section.lines(section.line_count());
+        let lines = section.lines(section.line_count(false));
         let around = section.circumference();
         let pattern = Pattern::new(&s.cuticle, &lines, around, 3).unwrap();
         let (mut sum, mut length) = (0.0, 0.0);
