@@ -28,8 +28,8 @@ pub(super) struct Args {
     /// Hair class; the first of the species if not given.
     #[arg(long)]
     class: Option<String>,
-    /// Position along the hair, 0 root to 1 tip: the nearest station is built. The thickest if not
-    /// given.
+    /// Position along the hair, 0 root to 1 tip: what grows there, blended from the stations next to
+    /// it. The station at the thickest place if not given.
     #[arg(long)]
     station: Option<f64>,
     /// Override a field of the species. May repeat.
@@ -153,7 +153,15 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     }
     let species = species::load(&args.name, &args.set)?;
     let class = find_class(&species, args.class.as_deref())?;
-    let station = find_station(class, args.station)?;
+    let mut station = find_station(class, args.station)?.clone();
+    if let Some(at) = args.station {
+        let blended = class.structure_at(at);
+        station = Station {
+            at,
+            structure: blended.unwrap_or(station.structure),
+        };
+    }
+    let station = &station;
     for path in &args.output {
         format_of(path)?;
         check_writable(path)?;

@@ -89,12 +89,12 @@ static SKIN: Shape = Shape {
 const DIAMETER: Field = Field::layered(
     "diameter_um",
     Kind::Number(number(1.0, 1000.0, "um")),
-    "Mean outer diameter here: the geometric mean of the two axes.",
+    "Mean outer diameter here: that of the circle of equal area.",
 );
 const ASPECT: Field = Field::layered(
     "aspect",
     Kind::Number(number(1.0, 5.0, "")),
-    "Major over minor axis of the elliptical section.",
+    "Major over minor axis of the section.",
 );
 const IOR: Field = Field::layered(
     "ior",
@@ -114,7 +114,7 @@ const MATERIALS_FIELD: Field = Field::optional(
 const TWIST: Field = Field::optional(
     "twist_turns_per_cm",
     Kind::Number(number(-20.0, 20.0, "turns per cm")),
-    "Turns of the section about the axis; 0 when left out.",
+    "Turns of the section about the axis; 0 when left out. Tables average over all rotations.",
 );
 const SECTION: Field = Field::optional(
     "section",

@@ -20,6 +20,7 @@ mod schema;
 mod shape;
 mod spectrum;
 mod start;
+mod stations;
 mod tree;
 mod words;
 

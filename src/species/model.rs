@@ -56,13 +56,15 @@ pub struct Station {
 /// Cross-section, surface and interior of a fiber.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Structure {
-    /// Mean outer diameter (geometric mean of the axes), micrometers, 1..1000.
+    /// Diameter of the circle of equal area, micrometers, 1..1000: for an ellipse the geometric mean of
+    /// its axes.
     pub diameter_um: f64,
     /// Major over minor axis of the section, 1..5.
     pub aspect: f64,
     /// Shape of the section.
     pub section: Section,
-    /// Turns of the section about the axis, per centimeter.
+    /// Turns of the section about the axis, per centimeter. Tables do not see it: they average over
+    /// all rotations of the fiber, as far as a hair turns within the width of a pixel.
     pub twist_turns_per_cm: f64,
     /// Refractive index of cuticle and cortex, 1..3.
     pub ior: f64,

@@ -173,7 +173,11 @@ fn hard_directions_neither_hang_nor_leak() {
             // Lifted scales make the shell so thick that such a ray crosses decimeters of cells in it.
             let steepest = if name == "worn bear" { 1e-3 } else { 1e-9 };
             if left > 0 && dir.x.hypot(dir.y) > steepest {
-                assert_eq!(region, Region::Outside, "{name}, path {path}, {dir} {p} {from:?}");
+                assert_eq!(
+                    region,
+                    Region::Outside,
+                    "{name}, path {path}, {dir} {p} {from:?}"
+                );
             }
         }
     }
