@@ -102,12 +102,15 @@ pub(crate) fn quote(text: &str) -> String {
     format!("\"{cut}{dots}\"")
 }
 
-/// Reads a document. The parser itself limits nesting to 80 levels.
+/// Levels of nesting that the parser allows; it does not say where there are more.
+const DEEPEST: usize = 80;
+
+/// Reads a document. The parser itself limits nesting to [`DEEPEST`] levels.
 ///
 /// # Errors
 /// The first violation of TOML's syntax: message and byte span.
 pub(crate) fn parse(text: &str) -> Result<Table, (String, Range<usize>)> {
-    let document = DeTable::parse(text).map_err(|e| syntax(&e, text.len()))?;
+    let document = DeTable::parse(text).map_err(|e| syntax(&e, text))?;
     Ok(table(document.get_ref(), &Where::File))
 }
 
@@ -123,9 +126,55 @@ pub(crate) fn parse_override(text: &str, index: usize) -> Node {
     }
 }
 
-fn syntax(error: &toml::de::Error, end: usize) -> (String, Range<usize>) {
-    let message = error.message().lines().collect::<Vec<_>>().join(", ");
-    (message, error.span().unwrap_or(end..end))
+fn syntax(error: &toml::de::Error, text: &str) -> (String, Range<usize>) {
+    if let Some(span) = error.span() {
+        let message = error.message().lines().collect::<Vec<_>>().join(", ");
+        return (message, span);
+    }
+    match too_deep(text) {
+        Some(at) => (
+            format!("nested deeper than {DEEPEST} levels"),
+            at..(at + 1).min(text.len()),
+        ),
+        None => (error.message().to_owned(), text.len()..text.len()),
+    }
+}
+
+/// The byte at which brackets and dotted keys first go deeper than the parser allows; strings and
+/// comments do not count.
+fn too_deep(text: &str) -> Option<usize> {
+    let (mut brackets, mut dots) = (0_usize, 0_usize);
+    let mut quote: Option<u8> = None;
+    let mut escaped = false;
+    let mut comment = false;
+    for (at, byte) in text.bytes().enumerate() {
+        match (byte, quote) {
+            (b'\n', _) => {
+                (comment, dots) = (false, 0);
+                // A single-line string ends here, and this scan does not know of others.
+                quote = None;
+            }
+            _ if comment => {}
+            (b'\\', Some(b'"')) if !escaped => {
+                escaped = true;
+                continue;
+            }
+            (_, Some(open)) if byte == open && !escaped => quote = None,
+            (_, Some(_)) => {}
+            (b'"' | b'\'', None) => quote = Some(byte),
+            (b'#', None) => comment = true,
+            (b'[' | b'{', None) => brackets += 1,
+            (b']' | b'}', None) => brackets = brackets.saturating_sub(1),
+            (b'.', None) => dots += 1,
+            (b'=' | b',', None) => dots = 0,
+            _ => {}
+        }
+        escaped = false;
+        if brackets + dots >= DEEPEST {
+            return Some(at);
+        }
+    }
+    None
 }
 
 /// Which text spans refer to.

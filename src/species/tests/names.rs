@@ -87,3 +87,50 @@ fn synonyms_are_texts_each_once() {
     }
     assert!(wrong("[]").is_empty() && wrong("[\"a\", \"b\"]").is_empty());
 }
+
+#[test]
+fn the_library_has_the_animals_that_it_promises() {
+    let animals = [
+        "alpaca",
+        "arctic-fox",
+        "badger",
+        "bat",
+        "beaver",
+        "bobcat",
+        "brown-bear",
+        "caribou",
+        "cashmere-goat",
+        "cat",
+        "chinchilla",
+        "cow",
+        "deer",
+        "dog",
+        "fur-seal",
+        "harbor-seal",
+        "hare",
+        "horse",
+        "human",
+        "lynx",
+        "mink",
+        "mohair",
+        "moose",
+        "mouse",
+        "polar-bear",
+        "rabbit",
+        "raccoon",
+        "rat",
+        "red-fox",
+        "river-otter",
+        "roe-deer",
+        "sea-otter",
+        "sheep",
+        "squirrel",
+        "wolf",
+    ];
+    let (real, made_up): (Vec<&str>, Vec<&str>) =
+        ids().partition(|id| !load(id, &[]).unwrap().family.is_empty());
+    let mut real = real;
+    real.sort_unstable();
+    assert_eq!(real, animals);
+    assert_eq!(made_up, ["ember-lynx", "glass-moth", "glass-cylinder"]);
+}
