@@ -14,7 +14,7 @@
 //!
 //! At a level the level itself is returned; beyond the last one the last logarithmic slope goes on.
 
-use super::{ScatterMaps, StructureTable, TableError};
+use super::{Provenance, ScatterMaps, StructureTable, TableError};
 use rayon::prelude::*;
 
 /// Levels that take part in one sum. Six leave twice the error, ten gain nothing more.
@@ -81,7 +81,13 @@ impl ScatterMaps {
             absorption_per_um,
             radius_um: red.radius_um,
             ledger: ledger.collect(),
-            provenance: red.provenance.clone(),
+            provenance: Provenance {
+                content: tables
+                    .each_ref()
+                    .map(|t| t.provenance.content.as_str())
+                    .join(" "),
+                ..red.provenance.clone()
+            },
         })
     }
 }
@@ -299,7 +305,7 @@ fn least_squares(rows: Vec<(Vec<f64>, f64)>, columns: usize) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::sampling::Rng;
-    use crate::table::{Ledger, Mode, Nodes, PHOTON, Provenance};
+    use crate::table::{Ledger, Mode, Nodes, PHOTON};
 
     /// Path lengths and their shares: the truth, from which levels and answers both follow.
     type Mixture = Vec<(f64, f64)>;

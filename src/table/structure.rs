@@ -42,7 +42,8 @@ pub struct Provenance {
     pub seed: u64,
     /// Events after which a photon was given up.
     pub max_events: u32,
-    /// SHA-256 of structure, settings and format version, in hexadecimal: the name in the cache.
+    /// SHA-256 of structure, settings and format version, in hexadecimal: the name in the cache. Three of
+    /// them, separated by blanks, for maps of which each channel was baked by itself.
     pub content: String,
     /// The species file with overrides.
     pub species_text: String,
