@@ -171,6 +171,32 @@ mod tests {
     }
 
     #[test]
+    fn every_facet_of_a_conductor_takes_its_share() {
+        let (n, k, roughness) = (1.2, 2.5, 0.8);
+        let copper = Optics::Metal {
+            ior: n,
+            extinction: k,
+            roughness,
+        };
+        let mut several = 0;
+        for stream in 0..5000 {
+            let dir = from_angle(1.2);
+            let (mut product, mut facets) = (1.0, 0);
+            let facet = |d: DVec3, m: DVec3, _, _: &mut Rng| {
+                product *= fresnel::conductor(-d.dot(m), n, k);
+                facets += 1;
+                reflected(fresnel::renormalize(fresnel::reflect(d, m)))
+            };
+            walk(dir, DVec3::Z, roughness, &mut Rng::new(8, stream), facet).unwrap();
+            let mut rng = Rng::new(8, stream);
+            let (_, share) = meet(&copper, dir, DVec3::Z, SAME, 1.0, &mut rng).unwrap();
+            assert!((share - product).abs() < 1e-12, "{share} {product}");
+            several += i32::from(facets > 1);
+        }
+        assert!(several > 500, "{several} walks met more than one facet");
+    }
+
+    #[test]
     fn layers_reflect_by_their_formula_and_pass_straight() {
         let slab = Optics::Slab {
             layers: 1.0,
