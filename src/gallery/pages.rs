@@ -27,7 +27,7 @@ impl Picture<'_> {
     /// Its width and height, pixels: small, because there are hundreds.
     pub fn size(&self) -> (usize, usize) {
         let height = match self.column {
-            Column::Swatch => 240,
+            Column::Swatch => 216,
             _ => 200,
         };
         let width = self.column.aspect() * height as f64;

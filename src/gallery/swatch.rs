@@ -11,6 +11,9 @@ use crate::skin;
 use crate::species::Species;
 use glam::Vec3;
 
+/// Even, or a palette of few colors shows steps in it.
+const BACKDROP: Vec3 = Vec3::splat(0.2);
+
 pub(super) fn draw(
     studio: &Studio,
     species: &Species,
@@ -35,7 +38,7 @@ pub(super) fn draw(
         materials,
         skin: Some((&skin, color)),
         environment: Environment::studio().turned(view.yaw_deg),
-        backdrop: Backdrop::default(),
+        backdrop: Backdrop::Plain(BACKDROP),
         ground: None,
         view,
     })?;

@@ -15,7 +15,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 pub(super) const FINE: usize = 360;
 
 /// The same for small pictures, where a step is a pixel or two.
-pub(super) const COARSE: usize = 120;
+pub(super) const COARSE: usize = 180;
 
 /// Directions averaged for one corner of the mesh, along each axis.
 const TAPS: i32 = 5;
