@@ -5,6 +5,7 @@ use super::medulla::Pieces;
 use super::section::{UnitRay, floor};
 use crate::sampling::{Rng, hash64};
 use crate::species::Structure;
+use glam::DVec3;
 
 /// Where the pigment lies. Its mean over the cortex is 1.
 #[derive(Clone, Debug)]
@@ -72,21 +73,24 @@ impl Pigment {
         }
         let (a, b) = self.within_medulla(ray, t);
         let inside = (b - a).max(0.0);
-        let core = match pieces {
-            _ if inside == 0.0 => 0.0,
-            None => self.walls * inside,
-            Some(pieces) => {
-                let share = pieces.share(ray.z + a * ray.dz, ray.z + b * ray.dz);
-                inside * (share * self.walls + 1.0 - share)
-            }
+        let share = match pieces {
+            _ if inside == 0.0 => 1.0,
+            None => 1.0,
+            Some(pieces) => pieces.share(ray.z + a * ray.dz, ray.z + b * ray.dz),
         };
+        let core = share * self.walls * inside;
         if even {
-            return t - inside + core;
+            return t - share * inside + core;
         }
         if inside == 0.0 {
-            return self.cortex(ray, 0.0, t);
+            return self.cortex(ray, 0.0, t, None);
         }
-        core + self.cortex(ray, 0.0, a) + self.cortex(ray, b, t)
+        // Between its pieces the cortex goes on.
+        let gaps = match pieces {
+            Some(_) if share < 1.0 => self.cortex(ray, a, b, pieces),
+            _ => 0.0,
+        };
+        core + gaps + self.cortex(ray, 0.0, a, None) + self.cortex(ray, b, t, None)
     }
 
     /// The part of `0..t` within the medulla's outline.
@@ -104,20 +108,32 @@ impl Pigment {
             .map_or((0.0, 0.0), |(a, b)| (a.max(0.0), b.min(t)))
     }
 
-    /// The integral over a part of the ray outside the medulla.
-    fn cortex(&self, ray: &UnitRay, t0: f64, t1: f64) -> f64 {
+    /// The integral over a part of the ray in the cortex.
+    ///
+    /// * `pieces`: those of the medulla that the part may pass, which are left out.
+    fn cortex(&self, ray: &UnitRay, t0: f64, t1: f64, pieces: Option<&Pieces>) -> f64 {
         if t1 <= t0 {
             return 0.0;
         }
+        let outside = |t0: f64, t1: f64| {
+            pieces.map_or(1.0, |p| {
+                1.0 - p.share(ray.z + t0 * ray.dz, ray.z + t1 * ray.dz)
+            })
+        };
+        // Where the medulla would be the density is that beside it.
+        let density = |lean: &Lean, p: DVec3| lean.density(p.x.hypot(p.y).max(self.ratio));
         match (&self.streaks, &self.lean) {
-            (None, None) => t1 - t0,
+            (None, None) => (t1 - t0) * outside(t0, t1),
+            (None, Some(lean)) if pieces.is_some() => {
+                (t1 - t0) * outside(t0, t1) * lean.density(self.ratio)
+            }
             (None, Some(lean)) => lean.integral(ray, t0, t1),
             (Some(streaks), lean) => {
                 let mut sum = 0.0;
-                streaks.walk(ray, t0, t1, |density, t0, t1| {
+                streaks.walk(ray, t0, t1, |streak, t0, t1| {
                     let p = ray.at(0.5 * (t0 + t1));
-                    let at = lean.map_or(1.0, |l| l.density(p.x.hypot(p.y)));
-                    sum += density * at * (t1 - t0);
+                    let at = lean.as_ref().map_or(1.0, |lean| density(lean, p));
+                    sum += streak * at * (t1 - t0) * outside(t0, t1);
                 });
                 sum
             }

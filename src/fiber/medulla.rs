@@ -9,6 +9,8 @@ mod lattice;
 mod pieces;
 
 pub(super) use detail::Homogeneous;
+#[cfg(test)]
+pub(super) use detail::equivalent;
 pub(super) use pieces::Pieces;
 
 use super::bodies::{Bodies, Convex, Plane, Quadric};
@@ -246,19 +248,16 @@ impl Medulla {
         room: &Room,
         [radius_um, radius_sigma, air_fraction]: [f64; 3],
     ) -> Result<Voids, FiberError> {
+        let whole = [[0.0, room.period]];
         let recipe = Recipe {
             radius_um,
             radius_sigma,
             air_fraction,
-            volume: self.ratio
-                * self.ratio
-                * section.a
-                * section.b
-                * std::f64::consts::PI
-                * room.period,
+            area: std::f64::consts::PI * self.ratio * self.ratio * section.a * section.b,
             semi: room.semi,
             wobble: FROTH_WOBBLE,
             period: room.period,
+            spans: self.pieces.as_ref().map_or(&whole, Pieces::spans),
         };
         let spheres = recipe
             .pack(room.seed)
@@ -266,7 +265,6 @@ impl Medulla {
                 asked: air_fraction,
                 reached,
             })?;
-        let spheres = self.within_pieces(spheres, |s| s.center.z);
         let half = [self.ratio * section.a, self.ratio * section.b];
         Ok(Voids::Froth(Froth::new(spheres, room.period, half)))
     }

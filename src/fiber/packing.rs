@@ -7,19 +7,21 @@ use std::f64::consts::PI;
 
 /// What to pack.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Recipe {
+pub(super) struct Recipe<'a> {
     /// Median radius, micrometers, and deviation of its logarithm.
     pub(super) radius_um: f64,
     pub(super) radius_sigma: f64,
     /// Share of the medulla's volume.
     pub(super) air_fraction: f64,
-    /// The medulla's volume in one period, cubic micrometers.
-    pub(super) volume: f64,
+    /// Cross-section of the medulla, square micrometers.
+    pub(super) area: f64,
     /// Semi-axes of the ellipse that spheres may reach, micrometers.
     pub(super) semi: DVec2,
     /// Depth of the dents in the wall, as a share of the radius.
     pub(super) wobble: f64,
     pub(super) period: f64,
+    /// Where along z spheres may be: intervals in order.
+    pub(super) spans: &'a [[f64; 2]],
 }
 
 /// Least wall between two voids, micrometers; thinner walls tear in life, and 0 leaks in rounding.
@@ -41,12 +43,13 @@ pub(super) fn volume(spheres: &[Sphere]) -> f64 {
     4.0 / 3.0 * PI * cubes
 }
 
-impl Recipe {
+impl Recipe<'_> {
     /// Draws sizes until their volume is the asked share, places them at random and pushes overlaps
     /// apart. `Err` is the share that could be reached.
     pub(super) fn pack(&self, seed: u64) -> Result<Vec<Sphere>, f64> {
         let wall = Wall::new(self, seed);
-        let target = (1.0 + TOLERANCE) * self.air_fraction * self.volume;
+        let room = self.area * self.spans.iter().map(|s| s[1] - s[0]).sum::<f64>();
+        let target = (1.0 + TOLERANCE) * self.air_fraction * room;
         let mut spheres = self.draw(target, self.semi, seed);
         let skin = SKIN * self.radius_um;
         let mut pairs = Vec::new();
@@ -65,7 +68,7 @@ impl Recipe {
             drift += 2.0 * step;
         }
         self.shrink_to_fit(&mut spheres, &wall);
-        let reached = volume(&spheres) / self.volume;
+        let reached = volume(&spheres) / room;
         if reached < 0.98 * self.air_fraction {
             return Err(reached);
         }
@@ -90,17 +93,58 @@ impl Recipe {
                 .clamp(smallest.min(largest), largest)
                 .min(rest.cbrt());
             let (x, y) = crate::sampling::concentric_disk(rng.uniform(), rng.uniform());
+            // Evenly along the hair: in a slender tube crowds could not get apart.
+            let own = 4.0 / 3.0 * PI * radius.powi(3);
+            let along = (sum + rng.uniform() * own) / target;
             spheres.push(Sphere {
                 center: DVec3::new(
                     x * (semi.x - radius),
                     y * (semi.y - radius).max(0.0),
-                    rng.uniform() * self.period,
+                    self.height_at(along),
                 ),
                 radius,
             });
-            sum += 4.0 / 3.0 * PI * radius.powi(3);
+            sum += own;
         }
         spheres
+    }
+
+    /// The height where a share of the length of all spans lies below.
+    fn height_at(&self, share: f64) -> f64 {
+        let whole: f64 = self.spans.iter().map(|s| s[1] - s[0]).sum();
+        let mut rest = share * whole;
+        for [begin, end] in self.spans {
+            if rest <= end - begin {
+                return begin + rest;
+            }
+            rest -= end - begin;
+        }
+        self.spans.last().map_or(0.0, |s| s[1])
+    }
+
+    /// Moves a sphere back into the span that it is nearest to; wraps where there is one span alone.
+    fn keep_in_span(&self, sphere: &mut Sphere) -> f64 {
+        let z = sphere.center.z;
+        if self.spans.len() < 2 {
+            sphere.center.z = z.rem_euclid(self.period);
+            return 0.0;
+        }
+        let beyond = |s: &&[f64; 2]| (s[0] - z).max(z - s[1]).max(0.0);
+        let nearest = self
+            .spans
+            .iter()
+            .min_by(|a, b| beyond(a).total_cmp(&beyond(b)));
+        let Some(&[begin, end]) = nearest else {
+            return 0.0;
+        };
+        let (lo, hi) = (begin + sphere.radius, end - sphere.radius);
+        let kept = if lo < hi {
+            z.clamp(lo, hi)
+        } else {
+            0.5 * (begin + end)
+        };
+        sphere.center.z = kept;
+        (kept - z).abs()
     }
 
     /// One round: overlapping pairs step apart, spheres outside step in. The longest way that one
@@ -126,9 +170,9 @@ impl Recipe {
         let mut longest = 0.0f64;
         for (sphere, before) in spheres.iter_mut().zip(before) {
             let over = pull_inside(sphere, wall.semi_at(sphere.center));
+            let over = over.max(self.keep_in_span(sphere));
             worst = worst.max(over / sphere.radius);
-            longest = longest.max(sphere.center.distance_squared(before));
-            sphere.center.z = sphere.center.z.rem_euclid(self.period);
+            longest = longest.max(self.apart(before, sphere.center).length_squared());
         }
         (longest.sqrt(), worst)
     }
@@ -200,7 +244,7 @@ struct Wall {
 }
 
 impl Wall {
-    fn new(recipe: &Recipe, seed: u64) -> Self {
+    fn new(recipe: &Recipe<'_>, seed: u64) -> Self {
         let round = std::f64::consts::PI * (recipe.semi.x + recipe.semi.y) / DENT_UM;
         let along = recipe.period / DENT_UM;
         let mut rng = Rng::new(seed ^ 0x3a11_0000, 0);

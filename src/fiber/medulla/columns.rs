@@ -42,7 +42,7 @@ pub(super) fn tire_tread(cell_um: f64, pitch_um: f64, septum_um: f64) -> Stack {
         pitch_um,
         septum_um,
         jitter: 0.04,
-        corner: 1.45,
+        corner: 1.2,
         dent: 0.15,
     }
 }

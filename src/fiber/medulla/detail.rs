@@ -36,24 +36,49 @@ struct Grain {
     volume: f64,
 }
 
-/// The medium of a medulla that is one, or that has too many cells across.
-///
-/// Voids met per length along a line are a quarter of their surface per volume (Cauchy): that is the
-/// scattering coefficient. Absorption is that of the keratin between them.
+/// The medium of a medulla that is one, or that has too many cells.
 ///
 /// * `radius_um`: geometric mean of the medulla's semi-axes.
 pub(super) fn medium(medulla: &Medulla, radius_um: f64, period: f64) -> Option<Homogeneous> {
-    let grain = match medulla.kind {
-        MedullaKind::Medium {
+    if let MedullaKind::Medium {
+        scattering_per_um,
+        asymmetry,
+    } = medulla.kind
+    {
+        return Some(Homogeneous {
             scattering_per_um,
             asymmetry,
-        } => {
-            return Some(Homogeneous {
-                scattering_per_um,
-                asymmetry,
-                pigment: medulla.pigment,
-            });
+            pigment: medulla.pigment,
+        });
+    }
+    let grain = grain(&medulla.kind)?;
+    let across = 2.0 * radius_um / grain.cell_um;
+    let count = PI * radius_um * radius_um * period / grain.volume;
+    (across > MOST_ACROSS || count > MOST_VOIDS).then(|| grain.medium(medulla.pigment))
+}
+
+/// What a medulla of many small cells is like as a medium; `None` for those with few large ones.
+#[cfg(test)]
+pub(in crate::fiber) fn equivalent(medulla: &Medulla) -> Option<Homogeneous> {
+    grain(&medulla.kind).map(|grain| grain.medium(medulla.pigment))
+}
+
+impl Grain {
+    /// Voids met per length along a line are a quarter of their surface per volume (Cauchy): that is
+    /// the scattering coefficient. Absorption is that of the keratin between them: in a field that is
+    /// the same in all directions, rays pass every medium in the proportion of its volume times its
+    /// index squared, and the medium here has the keratin's index everywhere.
+    fn medium(&self, pigment: f64) -> Homogeneous {
+        Homogeneous {
+            scattering_per_um: 0.25 * self.surface,
+            asymmetry: BUBBLE_ASYMMETRY,
+            pigment: pigment * (1.0 - self.air),
         }
+    }
+}
+
+fn grain(kind: &MedullaKind) -> Option<Grain> {
+    Some(match *kind {
         MedullaKind::Froth {
             radius_um,
             radius_sigma,
@@ -94,17 +119,11 @@ pub(super) fn medium(medulla: &Medulla, radius_um: f64, period: f64) -> Option<H
             }
         }
         MedullaKind::None
+        | MedullaKind::Medium { .. }
         | MedullaKind::Ladder { .. }
         | MedullaKind::SChannel { .. }
         | MedullaKind::Cloisonne { .. }
         | MedullaKind::Globules { .. } => return None,
-    };
-    let across = 2.0 * radius_um / grain.cell_um;
-    let count = PI * radius_um * radius_um * period / grain.volume;
-    (across > MOST_ACROSS || count > MOST_VOIDS).then_some(Homogeneous {
-        scattering_per_um: 0.25 * grain.surface,
-        asymmetry: BUBBLE_ASYMMETRY,
-        pigment: medulla.pigment * (1.0 - grain.air),
     })
 }
 
