@@ -1,7 +1,8 @@
 //! Cortical fusi: slender slits of air in the cortex.
 
 use super::FiberError;
-use super::bodies::{Bodies, Convex, Quadric};
+use super::bodies::Bodies;
+use super::convex::{Convex, Quadric};
 use super::section::Section;
 use crate::sampling::Rng;
 use glam::{DVec2, DVec3};

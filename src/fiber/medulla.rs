@@ -13,7 +13,8 @@ pub(super) use detail::Homogeneous;
 pub(super) use detail::equivalent;
 pub(super) use pieces::Pieces;
 
-use super::bodies::{Bodies, Convex, Plane, Quadric};
+use super::bodies::Bodies;
+use super::convex::Convex;
 use super::froth::Froth;
 use super::ladder::Ladder;
 use super::packing::Recipe;
@@ -156,7 +157,7 @@ impl Medulla {
         if medium.is_none() {
             core.voids = core.build(structure, section, &room)?;
         } else if let Some(pieces) = &core.pieces {
-            let cylinders = cylinders(pieces, ratio * axes, period);
+            let cylinders = pieces.cylinders(ratio * axes);
             let half = (ratio * axes).to_array();
             core.voids = Voids::Bodies(Box::new(Bodies::new(cylinders, period, half, true)));
         }
@@ -391,34 +392,6 @@ impl Medulla {
         };
         if inside { self.fill() } else { Region::Cortex }
     }
-}
-
-/// Pieces of a homogeneous medulla as cylinders that overlap, each shorter than half a period.
-fn cylinders(pieces: &Pieces, semi: DVec2, period: f64) -> Vec<Convex> {
-    const OVERLAP_UM: f64 = 0.5;
-    let outline = Quadric::ellipsoid(DVec3::ZERO, semi.extend(f64::INFINITY));
-    let mut all = Vec::new();
-    for &[z0, z1] in pieces.spans() {
-        let count = (4.0 * (z1 - z0) / period).ceil().max(1.0);
-        let step = (z1 - z0) / count;
-        for k in 0..count as u32 {
-            let begin = z0 + f64::from(k) * step;
-            let end = (begin + step + OVERLAP_UM).min(z1);
-            let half = 0.5 * (end - begin);
-            let plane = |normal| Plane {
-                normal,
-                offset: half,
-            };
-            all.push(Convex {
-                center: DVec3::Z * (begin + half),
-                half: semi.extend(half),
-                planes: vec![plane(DVec3::Z), plane(DVec3::NEG_Z)],
-                quadrics: vec![outline],
-                island: false,
-            });
-        }
-    }
-    all
 }
 
 /// A ray in both frames.

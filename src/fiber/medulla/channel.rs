@@ -6,7 +6,7 @@
 //! The thin end of a disc stops short of the wall; there the gaps before and behind it are one.
 
 use super::Room;
-use crate::fiber::bodies::{Convex, Plane, Quadric};
+use crate::fiber::convex::{Convex, Plane, Quadric};
 use crate::sampling::Rng;
 use glam::{DVec2, DVec3};
 

@@ -3,7 +3,7 @@
 
 use super::Room;
 use crate::fiber::FiberError;
-use crate::fiber::bodies::{Convex, Plane, Quadric};
+use crate::fiber::convex::{Convex, Plane, Quadric};
 use crate::fiber::voronoi;
 use crate::sampling::Rng;
 use glam::{DMat3, DVec2, DVec3};

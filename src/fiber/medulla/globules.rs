@@ -2,7 +2,7 @@
 
 use super::Room;
 use crate::fiber::FiberError;
-use crate::fiber::bodies::{Convex, Quadric};
+use crate::fiber::convex::{Convex, Quadric};
 use crate::sampling::Rng;
 use glam::DVec3;
 

@@ -2,7 +2,7 @@
 
 use super::Room;
 use crate::fiber::FiberError;
-use crate::fiber::bodies::{Convex, Plane, Quadric};
+use crate::fiber::convex::{Convex, Plane, Quadric};
 use crate::fiber::voronoi::Polyhedron;
 use crate::sampling::Rng;
 use glam::DVec3;

@@ -1,7 +1,9 @@
 //! A medulla in pieces: on and off along the hair with log-normal lengths.
 
+use crate::fiber::convex::{Convex, Plane, Quadric};
 use crate::sampling::Rng;
 use crate::species::Continuity;
+use glam::{DVec2, DVec3};
 
 /// Where the medulla is within one period: intervals of z in order, apart from each other.
 #[derive(Clone, Debug)]
@@ -65,6 +67,34 @@ impl Pieces {
     /// Intervals of one period.
     pub(super) fn spans(&self) -> &[[f64; 2]] {
         &self.spans
+    }
+
+    /// The pieces as cylinders that overlap, each shorter than half a period.
+    pub(super) fn cylinders(&self, semi: DVec2) -> Vec<Convex> {
+        const OVERLAP_UM: f64 = 0.5;
+        let outline = Quadric::ellipsoid(DVec3::ZERO, semi.extend(f64::INFINITY));
+        let mut all = Vec::new();
+        for &[z0, z1] in &self.spans {
+            let count = (4.0 * (z1 - z0) / self.period).ceil().max(1.0);
+            let step = (z1 - z0) / count;
+            for k in 0..count as u32 {
+                let begin = z0 + f64::from(k) * step;
+                let end = (begin + step + OVERLAP_UM).min(z1);
+                let half = 0.5 * (end - begin);
+                let plane = |normal| Plane {
+                    normal,
+                    offset: half,
+                };
+                all.push(Convex {
+                    center: DVec3::Z * (begin + half),
+                    half: semi.extend(half),
+                    planes: vec![plane(DVec3::Z), plane(DVec3::NEG_Z)],
+                    quadrics: vec![outline],
+                    island: false,
+                });
+            }
+        }
+        all
     }
 
     /// Whether the medulla is there.

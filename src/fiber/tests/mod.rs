@@ -1,6 +1,7 @@
 //! Structures like those of real animals, and what every fiber must keep to.
 
 mod kinds;
+mod light;
 mod scales;
 mod sections;
 mod shapes;
