@@ -290,7 +290,7 @@ fn chords_in_the_voids_follow_cauchy() {
         for i in 0..8000 {
             let (mut p, dir) = line_in(&fiber, &mut Rng::new(43, i));
             let (mut region, mut from) = (Region::Cortex, None);
-            while fiber.medulla.ratio > 0.0 {
+            loop {
                 let hit = fiber.next_hit(p, dir, region, from).unwrap();
                 if region == Region::Void && fiber.is_in_medulla(p + 0.5 * hit.t * dir) {
                     sum += hit.t;
