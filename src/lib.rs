@@ -13,6 +13,7 @@
 //! makes tables usable by a renderer. [`groom`] grows strands on a [`skin`]; [`scene`] gathers
 //! everything that [`render`] needs; [`image`] writes pictures.
 
+mod accel;
 pub mod assembly;
 pub mod bake;
 pub mod blame;
@@ -25,6 +26,7 @@ pub mod groom;
 pub mod image;
 pub mod io;
 pub mod math;
+pub mod mesh_file;
 pub mod micrograph;
 pub mod progress;
 pub mod render;

@@ -6,7 +6,7 @@ use super::bake::{find_class, find_station};
 use super::{Console, Failure};
 use crate::blame::Blame;
 use crate::fiber::{Fiber, FiberError};
-use crate::io::check_writable;
+use crate::io::{AtomicFile, check_writable};
 use crate::micrograph::{self, Legend, MicrographError, Microscope, Shot, Subject, View, tilt_deg};
 use crate::species::{self, HairClass, Species, Station};
 use serde_json::json;
@@ -73,8 +73,8 @@ pub(super) struct Args {
     /// Print a summary of the fiber as JSON.
     #[arg(long)]
     json: bool,
-    /// Where it goes: .png is a picture; .obj and .ply are meshes of one period with the parts
-    /// `cuticle` and `medulla`. May repeat.
+    /// Where it goes: .png is a picture; .obj, .ply and .glb are meshes of one period with the
+    /// parts `cuticle`, `riser`, `medulla` (a medium) and `void`. May repeat.
     #[arg(long, short)]
     output: Vec<PathBuf>,
 }
@@ -169,6 +169,9 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     let (view, shot) = view(args);
     micrograph::check(view, &shot)?;
     let fiber = Fiber::build(&station.structure, args.seed)?;
+    for warning in fiber.warnings() {
+        console.say(format!("warning: {warning}"));
+    }
     for path in &args.output {
         match format_of(path)? {
             Format::Png => {
@@ -183,6 +186,10 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
             }
             Format::Obj => mesh::write_obj(path, &fiber.mesh())?,
             Format::Ply => mesh::write_ply(path, &fiber.mesh())?,
+            Format::Glb => {
+                AtomicFile::write_all_to(path, &fiber.to_glb(&species.name))?;
+                console.say(mesh::how_to_use(path, fiber.period_um()));
+            }
         }
     }
     if args.json {
@@ -201,6 +208,7 @@ enum Format {
     Png,
     Obj,
     Ply,
+    Glb,
 }
 
 fn format_of(path: &Path) -> Result<Format, Failure> {
@@ -209,10 +217,11 @@ fn format_of(path: &Path) -> Result<Format, Failure> {
         "png" => Ok(Format::Png),
         "obj" => Ok(Format::Obj),
         "ply" => Ok(Format::Ply),
+        "glb" => Ok(Format::Glb),
         _ => Err(Failure::with_help(
             Blame::Input,
             format!("{}: unknown kind of file", path.display()),
-            "the name must end in .png, .obj or .ply",
+            "the name must end in .png, .obj, .ply or .glb",
         )),
     }
 }

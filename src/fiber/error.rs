@@ -1,10 +1,14 @@
 //! Structures whose parts do not fit into each other.
 
+use super::MeshError;
 use crate::blame::Blame;
 
 /// A structure that cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FiberError {
+    /// A designer's mesh that is no fiber.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
     /// Scales as high as the fiber is thick.
     #[error(
         "scales of {height_um} um are too high for a fiber with a least radius of {radius_um:.2} um \

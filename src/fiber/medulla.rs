@@ -89,6 +89,16 @@ fn unit_um(structure: &Structure) -> f64 {
 }
 
 impl Medulla {
+    /// No medulla.
+    pub(super) fn none() -> Self {
+        Self {
+            ratio: 0.0,
+            voids: Voids::None,
+            medium: None,
+            pieces: None,
+        }
+    }
+
     /// Length of a period: that of the scales as often as the medulla needs, or what suits the medulla
     /// where there are no scales.
     pub(super) fn period_um(structure: &Structure, scales_um: Option<f64>) -> f64 {
@@ -120,12 +130,7 @@ impl Medulla {
         let medulla = &structure.medulla;
         let ratio = medulla.ratio;
         if ratio <= 0.0 || medulla.kind == MedullaKind::None {
-            return Ok(Self {
-                ratio: 0.0,
-                voids: Voids::None,
-                medium: None,
-                pieces: None,
-            });
+            return Ok(Self::none());
         }
         let least_radius = rho_min * section.b;
         if ratio * section.b >= least_radius - 0.02 {

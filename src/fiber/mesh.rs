@@ -1,8 +1,10 @@
-//! Triangles of one period, for other programs to look at.
+//! Triangles of one period, for other programs to look at and to model on.
+
+mod glb;
+mod shell;
 
 use super::Fiber;
 use super::medulla::Voids;
-use super::scales::{Cell, Scales};
 use super::surface::Surface;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -11,7 +13,8 @@ use std::f64::consts::{PI, TAU};
 /// A named part of a fiber as triangles, counterclockwise seen from outside. Micrometers.
 #[derive(Clone, Debug)]
 pub struct MeshPart {
-    /// `cuticle` or `medulla`.
+    /// `cuticle`, `riser`, `medulla` (the outline of a medium) or `void`. Cuticle and risers are
+    /// closed together.
     pub name: &'static str,
     /// Positions.
     pub points: Vec<DVec3>,
@@ -19,31 +22,32 @@ pub struct MeshPart {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Steps round and from pole to pole of a void.
-const ROUND: u32 = 24;
-const POLES: u32 = 12;
-/// Steps round a bare cylinder.
-const CYLINDER: u32 = 96;
+/// Flat pieces round the fiber: half a degree each, far below the spread by roughness. Twice as many
+/// double file and memory and change nothing that a bake shows.
+const ROUND: usize = 720;
+/// Triangles for all voids together, and most and fewest steps round one of them: many small voids
+/// scatter by their number, a few large ones by their shape.
+const VOID_TRIANGLES: usize = 400_000;
+const VOID_ROUND: (usize, usize) = (24, 128);
 
 impl Fiber {
-    /// One period as triangles: the outer surface, open at both ends, and the voids, closed.
+    /// One period as triangles: the outer surface, whose two ends are open and alike, and closed
+    /// voids, or the outline of a homogeneous medulla.
     pub fn mesh(&self) -> Vec<MeshPart> {
-        let mut cuticle = Weld::new("cuticle");
-        match &self.surface {
-            Surface::Smooth => cylinder(&mut cuticle, 1.0, self.period_um),
-            Surface::Scales(scales) => {
-                for sector in 0..scales.sectors.len() {
-                    self.sector(scales, sector, &mut cuticle);
-                }
-            }
+        if let Some(triangles) = &self.triangles {
+            return triangles.parts.clone();
         }
-        let mut parts = vec![cuticle];
+        let mut parts = match &self.surface {
+            Surface::Smooth => vec![cylinder("cuticle", 1.0, self.period_um)],
+            Surface::Scales(scales) => shell::tessellate(scales, ROUND).into(),
+        };
         if self.medulla.ratio > 0.0 {
             parts.push(self.medulla_part());
         }
         let (a, b) = (self.section.a, self.section.b);
         parts
             .into_iter()
+            .filter(|weld| !weld.triangles.is_empty())
             .map(|weld| MeshPart {
                 points: weld
                     .points
@@ -56,42 +60,26 @@ impl Fiber {
             .collect()
     }
 
-    /// Faces of a sector and the risers between them.
-    fn sector(&self, scales: &Scales, sector: usize, weld: &mut Weld) {
-        let planes = scales.sectors[sector].planes;
-        let corner = |strip: usize, side: usize, upper: bool| {
-            let s = scales.strip(Cell {
-                sector,
-                strip,
-                shift: 0.0,
-            });
-            let z = if upper { s.end[side] } else { s.begin[side] };
-            let rho = 1.0 + s.height[side] + s.slope[side] * z;
-            DVec3::new(rho * planes[side].cos, rho * planes[side].sin, z)
-        };
-        let count = scales.count(sector);
-        for strip in 0..count {
-            let at = |side, upper| corner(strip, side, upper);
-            weld.quad([at(0, false), at(1, false), at(1, true), at(0, true)]);
-            let (next, up) = if strip + 1 == count {
-                (0, DVec3::Z * scales.period)
-            } else {
-                (strip + 1, DVec3::ZERO)
-            };
-            let above = |side| corner(next, side, false) + up;
-            weld.quad([at(0, true), at(1, true), above(1), above(0)]);
-        }
+    /// [`Fiber::mesh`] as a binary glTF file: nodes, meshes and materials named like the parts, a
+    /// unit a micrometer, +Y to the tip. A species whose `structure.mesh` names it is this fiber.
+    ///
+    /// * `name`: of the scene.
+    pub fn to_glb(&self, name: &str) -> Vec<u8> {
+        glb::encode(name, self.period_um, &self.mesh())
     }
 
     fn medulla_part(&self) -> Weld {
-        let mut weld = Weld::new("medulla");
         let (a, b) = (self.section.a, self.section.b);
+        let mut weld = Weld::new("void");
+        // From pole to pole there are half as many steps, and two triangles to each.
+        let round = ((VOID_TRIANGLES / self.void_count().max(1)) as f64).sqrt() as usize;
+        let round = round.clamp(VOID_ROUND.0, VOID_ROUND.1) / 4 * 4;
         match &self.medulla.voids {
-            Voids::None => cylinder(&mut weld, self.medulla.ratio, self.period_um),
+            Voids::None => weld = cylinder("medulla", self.medulla.ratio, self.period_um),
             Voids::Bodies(bodies) => {
                 // Convex: from the center out to the boundary in every direction.
                 for body in 0..bodies.len() as u32 {
-                    closed(&mut weld, |theta, phi| {
+                    closed(&mut weld, round, |theta, phi| {
                         let (sin, cos) = theta.sin_cos();
                         let dir = DVec3::new(sin * phi.cos(), sin * phi.sin(), cos);
                         let p = bodies.boundary(body, dir);
@@ -102,7 +90,7 @@ impl Fiber {
             Voids::Ladder(ladder) => {
                 for p in ladder.present() {
                     let half = |c: f64| c.abs().sqrt().copysign(c);
-                    closed(&mut weld, |theta, phi| {
+                    closed(&mut weld, round, |theta, phi| {
                         // The exponent 4 of the superellipsoid: square roots of sine and cosine.
                         let (r, z) = (p.radius * half(theta.sin()), p.half * half(theta.cos()));
                         DVec3::new(r * phi.cos(), r * phi.sin(), p.center + z)
@@ -111,7 +99,7 @@ impl Fiber {
             }
             Voids::Froth(froth) => {
                 for s in &froth.spheres {
-                    closed(&mut weld, |theta, phi| {
+                    closed(&mut weld, round, |theta, phi| {
                         let n = DVec3::new(
                             theta.sin() * phi.cos(),
                             theta.sin() * phi.sin(),
@@ -144,6 +132,9 @@ impl Fiber {
 
     /// Voids in a period.
     pub fn void_count(&self) -> usize {
+        if let Some(triangles) = &self.triangles {
+            return triangles.void_count;
+        }
         match &self.medulla.voids {
             Voids::None => 0,
             Voids::Ladder(ladder) => ladder.present().count(),
@@ -153,32 +144,35 @@ impl Fiber {
     }
 }
 
-fn cylinder(weld: &mut Weld, radius: f64, period: f64) {
-    for i in 0..CYLINDER {
+fn cylinder(name: &'static str, radius: f64, period: f64) -> Weld {
+    let mut weld = Weld::new(name);
+    for i in 0..ROUND {
         let [p, q] = [i, i + 1].map(|k| {
-            let phi = TAU * f64::from(k % CYLINDER) / f64::from(CYLINDER);
+            let phi = TAU * (k % ROUND) as f64 / ROUND as f64;
             radius * DVec3::new(phi.cos(), phi.sin(), 0.0)
         });
         let up = DVec3::Z * period;
-        weld.quad([p, q, q + up, p + up]);
+        weld.polygon(&[p, q, q + up, p + up]);
     }
+    weld
 }
 
 /// A closed surface over polar and azimuthal angle.
-fn closed(weld: &mut Weld, at: impl Fn(f64, f64) -> DVec3) {
-    let point = |i: u32, j: u32| {
+fn closed(weld: &mut Weld, round: usize, at: impl Fn(f64, f64) -> DVec3) {
+    let poles = round / 2;
+    let point = |i: usize, j: usize| {
         // The poles are one point, not a rounding apart.
-        let phi = if i == 0 || i == POLES {
+        let phi = if i == 0 || i == poles {
             0.0
         } else {
-            TAU * f64::from(j % ROUND) / f64::from(ROUND)
+            TAU * (j % round) as f64 / round as f64
         };
-        let theta = PI * f64::from(i) / f64::from(POLES);
-        at(if i == POLES { PI } else { theta }, phi)
+        let theta = PI * i as f64 / poles as f64;
+        at(if i == poles { PI } else { theta }, phi)
     };
-    for i in 0..POLES {
-        for j in 0..ROUND {
-            weld.quad([
+    for i in 0..poles {
+        for j in 0..round {
+            weld.polygon(&[
                 point(i + 1, j),
                 point(i + 1, j + 1),
                 point(i, j + 1),
@@ -188,8 +182,12 @@ fn closed(weld: &mut Weld, at: impl Fn(f64, f64) -> DVec3) {
     }
 }
 
+/// Points in one cell are one point; what is left of its size is for rounding.
+const CELLS_PER_UNIT: f64 = 1e7;
+const ROUNDING: f64 = 1e-3;
+
 /// Triangles whose equal corners are one point.
-struct Weld {
+pub(super) struct Weld {
     name: &'static str,
     points: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
@@ -197,7 +195,7 @@ struct Weld {
 }
 
 impl Weld {
-    fn new(name: &'static str) -> Self {
+    pub(super) fn new(name: &'static str) -> Self {
         Self {
             name,
             points: Vec::new(),
@@ -206,18 +204,32 @@ impl Weld {
         }
     }
 
+    /// The index of a point: that of a known one no farther than rounding.
     fn point(&mut self, p: DVec3) -> u32 {
-        let key = (p * 1e7).round().as_i64vec3().to_array();
-        *self.known.entry(key).or_insert_with(|| {
-            self.points.push(p);
-            self.points.len() as u32 - 1
-        })
+        let cell = p * CELLS_PER_UNIT;
+        let [lo, hi] = [-ROUNDING, ROUNDING].map(|r| (cell + r).floor().as_i64vec3());
+        // Near a cell's wall the known point may be in the next one.
+        for z in lo.z..=hi.z {
+            for y in lo.y..=hi.y {
+                for x in lo.x..=hi.x {
+                    if let Some(&known) = self.known.get(&[x, y, z]) {
+                        return known;
+                    }
+                }
+            }
+        }
+        let index = self.points.len() as u32;
+        self.points.push(p);
+        let key = cell.floor().as_i64vec3().to_array();
+        self.known.insert(key, index);
+        index
     }
 
-    /// Two triangles; corners that coincide leave one or none.
-    fn quad(&mut self, corners: [DVec3; 4]) {
-        let [a, b, c, d] = corners.map(|p| self.point(p));
-        for t in [[a, b, c], [a, c, d]] {
+    /// A fan of triangles; corners that coincide leave fewer.
+    pub(super) fn polygon(&mut self, corners: &[DVec3]) {
+        let corners: Vec<u32> = corners.iter().map(|&p| self.point(p)).collect();
+        for i in 2..corners.len() {
+            let t = [corners[0], corners[i - 1], corners[i]];
             if t[0] != t[1] && t[1] != t[2] && t[2] != t[0] {
                 self.triangles.push(t);
             }

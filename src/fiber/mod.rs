@@ -22,6 +22,7 @@ mod pattern;
 mod scales;
 mod section;
 mod surface;
+mod triangles;
 mod voronoi;
 
 #[cfg(test)]
@@ -30,17 +31,19 @@ mod tests;
 pub use error::FiberError;
 pub use mesh::MeshPart;
 pub use optics::{Medium, Optics, Part, Region};
+pub use triangles::{MeshError, Places};
 
-use crate::species::{CuticlePattern, Structure};
+use crate::species::{CuticlePattern, FiberMesh, MedullaKind, Structure};
 use bodies::Bodies;
 use cortex::Pigment;
 use glam::DVec3;
-use medulla::{Medulla, Rays};
+use medulla::{Homogeneous, Medulla, Rays};
 use optics::OpticalParts;
 use pattern::Pattern;
 use scales::Scales;
 use section::{Section, UnitRay};
 use surface::{Inward, OuterHit, OuterState, Surface};
+use triangles::Triangles;
 
 /// A boundary met by a ray.
 #[derive(Clone, Copy, Debug)]
@@ -75,6 +78,11 @@ enum Element {
     Void(u32),
     /// A face of a cortical fusus.
     Fusus(u32),
+    /// Triangle of a designer's mesh.
+    Triangle {
+        source: u32,
+        part: Part,
+    },
 }
 
 /// One period of a fiber.
@@ -86,6 +94,8 @@ pub struct Fiber {
     medulla: Medulla,
     fusi: Option<Box<Bodies>>,
     pigment: Pigment,
+    /// Stands in for all of these where the fiber is a designer's mesh.
+    triangles: Option<Box<Triangles>>,
     period_um: f64,
     bounding_radius_um: f64,
     optics: OpticalParts,
@@ -100,6 +110,9 @@ impl Fiber {
     /// medulla, films thicker than globules, a froth denser than spheres can be packed, fusi in a
     /// cortex thinner than they are.
     pub fn build(structure: &Structure, seed: u64) -> Result<Self, FiberError> {
+        if let Some(mesh) = &structure.mesh {
+            return Self::from_mesh(mesh, structure);
+        }
         let section = Section::of(structure)?;
         let cuticle = &structure.cuticle;
         if cuticle.pattern != CuticlePattern::Smooth && cuticle.height_um > section.b / 3.0 {
@@ -147,10 +160,45 @@ impl Fiber {
             medulla,
             fusi: fusi.map(Box::new),
             pigment,
+            triangles: None,
             period_um,
             bounding_radius_um,
             optics,
         })
+    }
+
+    fn from_mesh(mesh: &FiberMesh, structure: &Structure) -> Result<Self, FiberError> {
+        let triangles = Triangles::new(mesh, &structure.medulla)?;
+        let section = Section::of(structure)?;
+        let medium = match structure.medulla.kind {
+            MedullaKind::Medium {
+                scattering_per_um,
+                asymmetry,
+            } => Some(Homogeneous {
+                scattering_per_um,
+                asymmetry,
+                pigment: structure.medulla.pigment,
+            }),
+            _ => None,
+        };
+        let period_um = triangles.period_um();
+        Ok(Self {
+            structure: structure.clone(),
+            surface: Surface::Smooth,
+            medulla: Medulla::none(),
+            fusi: None,
+            pigment: Pigment::new(structure, [section.a, section.b], 0.0, period_um, 0),
+            section,
+            bounding_radius_um: triangles.radius_um,
+            triangles: Some(Box::new(triangles)),
+            period_um,
+            optics: OpticalParts::new(structure, medium.as_ref()),
+        })
+    }
+
+    /// What was mended in a designer's mesh or is odd about it, one sentence each.
+    pub fn warnings(&self) -> &[String] {
+        self.triangles.as_ref().map_or(&[], |t| &t.warnings)
     }
 
     /// The same fiber in another medium than air: the resin under a cover slip, water.
@@ -179,23 +227,36 @@ impl Fiber {
 
     /// Half the extent of the mean section along x and y, micrometers: its semi-axes.
     pub fn semi_axes_um(&self) -> [f64; 2] {
+        if let Some(triangles) = &self.triangles {
+            return triangles.semi_axes_um;
+        }
         self.section.half_extents()
     }
 
     /// Whether a point is within the outline of the medulla.
     pub fn is_in_medulla(&self, point: DVec3) -> bool {
+        if let Some(triangles) = &self.triangles {
+            return matches!(triangles.region_at(point), Region::Medulla | Region::Void);
+        }
         self.medulla.holds(self.section.unit_point(point))
     }
 
     /// Whether a hit was on the riser of a scale rather than on its face.
     pub fn is_riser(&self, state: HitState) -> bool {
-        matches!(state.element, Element::Outer(OuterState::Riser { .. }))
+        matches!(
+            state.element,
+            Element::Outer(OuterState::Riser { .. })
+                | Element::Triangle {
+                    part: Part::Riser,
+                    ..
+                }
+        )
     }
 
     /// Whether mirroring phi -> -phi gives the same statistics, so that tables may be folded. Holds
-    /// for every pattern here: none of them winds round the shaft.
+    /// for every pattern here: none of them winds round the shaft. A designer's mesh may.
     pub fn is_mirror_symmetric(&self) -> bool {
-        true
+        self.triangles.is_none()
     }
 
     /// Properties of a region.
@@ -218,6 +279,9 @@ impl Fiber {
 
     /// The region that holds a point, found from the shapes alone, without any ray.
     pub fn region_at(&self, point: DVec3) -> Region {
+        if let Some(triangles) = &self.triangles {
+            return triangles.region_at(point);
+        }
         let unit = self.section.unit_point(point);
         if !self.surface.contains(unit) {
             Region::Outside
@@ -230,6 +294,9 @@ impl Fiber {
 
     /// Share of the medulla's volume that is voids, gaps between its pieces counted; 0 without voids.
     pub fn air_fraction(&self) -> f64 {
+        if let Some(triangles) = &self.triangles {
+            return triangles.air_fraction;
+        }
         self.medulla.air_fraction(&self.section, self.period_um)
     }
 
@@ -246,6 +313,11 @@ impl Fiber {
         region: Region,
         from: Option<HitState>,
     ) -> Option<Hit> {
+        if let Some(triangles) = &self.triangles {
+            let mut hit = triangles.next_hit(origin, dir, region, from)?;
+            hit.pigment_um = hit.t * self.medium(region).pigment;
+            return Some(hit);
+        }
         let rays = Rays {
             origin,
             dir,
@@ -312,6 +384,9 @@ impl Fiber {
 
     #[inline]
     fn pigment_on(&self, rays: &Rays, region: Region, t: f64) -> f64 {
+        if self.triangles.is_some() {
+            return t * self.medium(region).pigment;
+        }
         match region {
             Region::Outside | Region::Cuticle | Region::Void => 0.0,
             Region::Medulla => t * self.medium(region).pigment,

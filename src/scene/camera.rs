@@ -1,6 +1,6 @@
 //! A pinhole camera that finds its own place in front of the subject.
 
-use super::accel::Ray;
+use crate::accel::Ray;
 use glam::{Mat3, Vec3};
 
 /// How to look at the subject. Angles in degrees.

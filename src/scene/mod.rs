@@ -1,6 +1,5 @@
 //! Everything that a renderer needs, resolved and immutable. Scene units are millimeters.
 
-mod accel;
 mod camera;
 mod environment;
 mod flatten;
@@ -8,7 +7,9 @@ mod ribbon;
 mod strands;
 mod surface;
 
-pub use accel::Ray;
+pub use crate::accel::Ray;
+
+use crate::accel::AccelError;
 pub use camera::{Camera, View};
 pub use environment::{
     Environment, EnvironmentError, EnvironmentSample, Sun, load as load_environment,
@@ -21,7 +22,6 @@ use crate::blame::Blame;
 use crate::bsdf::HairMaterial;
 use crate::color::Rgb;
 use crate::groom::Groom;
-use crate::sampling::hash64;
 use crate::skin::Skin;
 use glam::{Vec3, Vec4Swizzles};
 
@@ -321,11 +321,13 @@ impl SceneError {
     }
 }
 
-/// A hash of some words.
-fn hash_bits(words: &[u32]) -> u64 {
-    words.iter().fold(0x5851_f42d_4c95_7f2d, |h, &w| {
-        hash64(h ^ u64::from(w).wrapping_mul(0x9e37_79b9_7f4a_7c15)).wrapping_add(u64::from(w))
-    })
+impl From<AccelError> for SceneError {
+    fn from(error: AccelError) -> Self {
+        match error {
+            AccelError::Coordinates { at } => Self::Coordinates { at },
+            AccelError::Coincident { count, at } => Self::Coincident { count, at },
+        }
+    }
 }
 
 #[cfg(test)]

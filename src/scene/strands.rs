@@ -1,9 +1,9 @@
 //! All strands of a scene as segments behind an acceleration structure.
 
-use super::accel::{Accel, LIMIT, Ray};
+use super::SceneError;
 use super::flatten::flatten;
 use super::ribbon::Segment;
-use super::{SceneError, hash_bits};
+use crate::accel::{Accel, LIMIT, Ray, hash_bits};
 use crate::groom::Groom;
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;

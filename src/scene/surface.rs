@@ -1,8 +1,8 @@
 //! The skin under the fur: triangles that scatter like matte paint.
 
 use super::SceneError;
-use super::accel::{Accel, Ray};
 use super::strands::UNITS_PER_METER;
+use crate::accel::{Accel, Ray};
 use crate::color::Rgb;
 use crate::skin::Skin;
 use glam::Vec3;

@@ -152,7 +152,7 @@ fn coincident_strands_neither_hang_nor_matter() {
 #[test]
 fn crowds_and_bad_numbers_are_refused() {
     let crowd: Vec<(Vec3, Vec3)> = vec![(Vec3::ZERO, Vec3::ONE); 65];
-    let error = accel::Accel::build(&crowd).err().unwrap();
+    let error = SceneError::from(crate::accel::Accel::build(&crowd).err().unwrap());
     assert!(matches!(error, SceneError::Coincident { count: 65, .. }));
 
     let good = tangle(3, 1.0);

@@ -3,8 +3,6 @@
 mod body;
 mod builtin;
 mod error;
-mod obj;
-mod ply;
 mod raw;
 mod sculpt;
 mod surface_nets;
@@ -13,7 +11,7 @@ mod tests;
 
 pub use error::SkinError;
 
-use crate::io::read_bounded;
+use crate::mesh_file::{self, Format};
 use glam::{Vec2, Vec3};
 use std::path::Path;
 
@@ -67,22 +65,14 @@ pub fn load(name_or_path: &str) -> Result<Skin, SkinError> {
     }
 }
 
-/// Longest mesh file, bytes.
-const MAX_FILE: u64 = 2 << 30;
-
 fn load_file(name: &str) -> Result<Skin, SkinError> {
     let path = Path::new(name);
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-    let read: fn(&str, &[u8]) -> Result<Skin, SkinError> = match extension {
-        "obj" | "OBJ" => obj::read,
-        "ply" | "PLY" => ply::read,
-        _ => {
-            return Err(SkinError::UnknownName {
-                name: name.to_owned(),
-            });
-        }
-    };
-    read(name, &read_bounded(path, MAX_FILE)?)
+    if Format::of(path).is_none() {
+        return Err(SkinError::UnknownName {
+            name: name.to_owned(),
+        });
+    }
+    mesh_file::read(path)?.into_skin(name)
 }
 
 impl Skin {

@@ -2,78 +2,22 @@
 
 use super::builtin::tangent;
 use super::{Skin, SkinError};
+use crate::mesh_file::RawMesh;
 use glam::{Vec2, Vec3};
 use std::collections::{HashMap, HashSet};
 use std::f32::consts::{PI, TAU};
-
-/// Most vertices and faces of a mesh.
-pub(super) const MAX_COUNT: u64 = 50_000_000;
-
-/// Largest coordinate, meters.
-const MAX_COORDINATE: f32 = 1e6;
 
 /// Boxes beyond these are most likely in other units, meters.
 const SMALL: f32 = 1e-3;
 const LARGE: f32 = 20.0;
 
-/// A mesh as read: nothing checked but that indices fit their type.
-#[derive(Default)]
-pub(super) struct RawMesh {
-    pub(super) positions: Vec<Vec3>,
-    /// As many as positions, or none.
-    pub(super) normals: Vec<Vec3>,
-    /// As many as positions, or none.
-    pub(super) uvs: Vec<Vec2>,
-    pub(super) triangles: Vec<[u32; 3]>,
-    /// Number of the face that each triangle was cut from.
-    pub(super) face: Vec<u32>,
-    /// Faces in the file.
-    pub(super) faces: usize,
-}
-
 impl RawMesh {
-    /// Cuts a polygon into a fan.
-    pub(super) fn add_polygon(&mut self, corners: &[u32]) {
-        for i in 2..corners.len() {
-            self.triangles
-                .push([corners[0], corners[i - 1], corners[i]]);
-            self.face.push(self.faces as u32);
-        }
-        self.faces += 1;
-    }
-
-    /// Checks and completes the mesh. `vertex_place` and `face_place` name a place in the file.
+    /// Completes the mesh.
     ///
     /// Degenerate and repeated triangles are dropped, unused vertices too, normals are computed
     /// where missing (weighted by angle), texture coordinates go round the vertical axis, the fur
     /// lies along the longest horizontal axis toward -X or -Z, and down.
-    pub(super) fn into_skin(
-        self,
-        file: &str,
-        vertex_place: impl Fn(usize) -> String,
-        face_place: impl Fn(usize) -> String,
-    ) -> Result<Skin, SkinError> {
-        let invalid = |place: String, reason: String| SkinError::Invalid {
-            file: file.to_owned(),
-            place,
-            reason,
-        };
-        for (i, p) in self.positions.iter().enumerate() {
-            if !(p.is_finite() && p.abs().max_element() <= MAX_COORDINATE) {
-                let reason = format!(
-                    "position ({}, {}, {}) is not finite or beyond {MAX_COORDINATE} m",
-                    p.x, p.y, p.z
-                );
-                return Err(invalid(vertex_place(i), reason));
-            }
-        }
-        let count = self.positions.len();
-        for (i, t) in self.triangles.iter().enumerate() {
-            if let Some(v) = t.iter().find(|&&v| v as usize >= count) {
-                let reason = format!("refers to vertex index {v} of a mesh of {count} vertices");
-                return Err(invalid(face_place(self.face[i] as usize), reason));
-            }
-        }
+    pub(super) fn into_skin(self, file: &str) -> Result<Skin, SkinError> {
         let mut warnings = Vec::new();
         let mut triangles = self.sound_triangles(&mut warnings);
         if triangles.is_empty() {

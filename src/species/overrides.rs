@@ -75,7 +75,7 @@ impl Target<'_> {
                 Kind::Table(shape) => set_table(table, key, shape, path, rest, value),
                 Kind::Tables(shape, _) => set_item(table, key, shape, path, rest, value),
                 Kind::Numbers(..) | Kind::Color(_) => set_number(table, key, path, rest, value),
-                Kind::Sources if rest.len() == 1 => {
+                Kind::Sources | Kind::Words(_) if rest.len() == 1 => {
                     let mut inner = value.clone();
                     if let Some(Data::Table(old)) = table.get(key).map(|n| &n.data) {
                         let mut old = old.clone();

@@ -81,6 +81,10 @@ fn property(field: &Field, definitions: &mut Map<String, Value>) -> Value {
             "maxItems": count,
             "items": number("number", *range),
         })),
+        Kind::Setting(range) => number("number", *range),
+        Kind::Words(choices) => {
+            json!({ "type": "object", "additionalProperties": one_of(choices) })
+        }
         Kind::Choice(choices) => one_of(choices),
         Kind::ChoiceOrFile(choices) => json!({
             "anyOf": [one_of(choices), { "type": "string", "pattern": "\\.toml$" }],

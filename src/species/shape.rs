@@ -59,6 +59,10 @@ pub(crate) enum Kind {
     Numbers(usize, Range),
     /// A number for all color channels or three for linear R, G, B, as `Number`.
     Color(Range),
+    /// A number that is no measurement and needs no origin.
+    Setting(Range),
+    /// Table of free keys, each with one of these words.
+    Words(&'static [Choice]),
     /// One of these words.
     Choice(&'static [Choice]),
     /// One of these words or the path of a `.toml` file.

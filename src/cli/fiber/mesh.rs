@@ -57,3 +57,12 @@ pub(super) fn write_ply(path: &Path, parts: &[MeshPart]) -> Result<(), FileError
     }
     AtomicFile::write_all_to(path, &bytes)
 }
+
+/// What to write into a species file to bake a mesh of ours.
+pub(super) fn how_to_use(path: &Path, period_um: f64) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    format!(
+        "to bake it, with a species file beside it or --set:\n[structure.mesh]\nfile = {name:?}\n\
+         period_um = {period_um}"
+    )
+}

@@ -1,9 +1,18 @@
 //! Meshes from files: good ones come through unchanged, bad ones are refused with the place named.
 
 use crate::blame::Blame;
+use crate::mesh_file::{Format, parse};
 use crate::sampling::Rng;
-use crate::skin::{Skin, SkinError, load, obj, ply};
+use crate::skin::{Skin, SkinError, load};
 use glam::Vec3;
+
+fn obj(file: &str, bytes: &[u8]) -> Result<Skin, SkinError> {
+    parse(Format::Obj, file, bytes)?.into_skin(file)
+}
+
+fn ply(file: &str, bytes: &[u8]) -> Result<Skin, SkinError> {
+    parse(Format::Ply, file, bytes)?.into_skin(file)
+}
 
 const CUBE: [[i32; 3]; 8] = [
     [0, 0, 0],
@@ -95,21 +104,21 @@ fn assert_is_the_cube(skin: &Skin) {
 
 #[test]
 fn the_cube_comes_through_in_every_format() {
-    assert_is_the_cube(&obj::read("c.obj", cube_obj(|v| format!("{}", v + 1)).as_bytes()).unwrap());
+    assert_is_the_cube(&obj("c.obj", cube_obj(|v| format!("{}", v + 1)).as_bytes()).unwrap());
     let from_end = cube_obj(|v| format!("{}", i64::from(v) - 8));
-    assert_is_the_cube(&obj::read("c.obj", from_end.as_bytes()).unwrap());
+    assert_is_the_cube(&obj("c.obj", from_end.as_bytes()).unwrap());
     let windows = cube_obj(|v| format!("{}", v + 1)).replace('\n', "\r\n");
-    assert_is_the_cube(&obj::read("c.obj", windows.as_bytes()).unwrap());
-    assert_is_the_cube(&ply::read("c.ply", &cube_ply_ascii()).unwrap());
-    assert_is_the_cube(&ply::read("c.ply", &cube_ply_binary(false)).unwrap());
-    assert_is_the_cube(&ply::read("c.ply", &cube_ply_binary(true)).unwrap());
+    assert_is_the_cube(&obj("c.obj", windows.as_bytes()).unwrap());
+    assert_is_the_cube(&ply("c.ply", &cube_ply_ascii()).unwrap());
+    assert_is_the_cube(&ply("c.ply", &cube_ply_binary(false)).unwrap());
+    assert_is_the_cube(&ply("c.ply", &cube_ply_binary(true)).unwrap());
 }
 
 #[test]
 fn normals_and_texture_coordinates_are_kept() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0.5\nvt 1 0\nvt 0 1\nvn 0 0.6 0.8\n\
                 f 1/1/1 2/2/1 3/3/1\n";
-    let skin = obj::read("t.obj", text.as_bytes()).unwrap();
+    let skin = obj("t.obj", text.as_bytes()).unwrap();
     assert_eq!(skin.uvs[0], glam::Vec2::new(0.25, 0.5));
     assert!(skin.normals[2].distance(Vec3::new(0.0, 0.6, 0.8)) < 1e-6);
 }
@@ -118,7 +127,7 @@ fn normals_and_texture_coordinates_are_kept() {
 fn what_is_mended_is_counted() {
     let good = cube_obj(|v| format!("{}", v + 1));
     let messy = format!("{good}f 1 1 2\nf 1 2 1\nf 1 4 3\nf 2 6 5\nf 3 2 1\nv 9 9 9\n");
-    let skin = obj::read("m.obj", messy.as_bytes()).unwrap();
+    let skin = obj("m.obj", messy.as_bytes()).unwrap();
     assert_eq!(skin.triangles.len(), 12 + 1, "{:?}", skin.warnings);
     assert_eq!(skin.positions.len(), 8, "the unused vertex is gone");
     assert!(skin.warnings[0].starts_with("2 faces without area"));
@@ -136,7 +145,7 @@ fn what_is_mended_is_counted() {
             None => format!("{l}\n"),
         })
         .collect();
-    let skin = obj::read("i.obj", inward.as_bytes()).unwrap();
+    let skin = obj("i.obj", inward.as_bytes()).unwrap();
     assert!(
         skin.warnings[0].contains("inside out"),
         "{:?}",
@@ -145,7 +154,7 @@ fn what_is_mended_is_counted() {
     assert!((super::volume(&skin, 0..12) - 1.0).abs() < 1e-6);
 
     let millimeters = "v 0 0 0\nv 65 0 0\nv 0 65 0\nf 1 2 3\n";
-    let mut skin = obj::read("mm.obj", millimeters.as_bytes()).unwrap();
+    let mut skin = obj("mm.obj", millimeters.as_bytes()).unwrap();
     assert!(
         skin.warnings[0].contains("65 m large"),
         "{:?}",
@@ -217,13 +226,9 @@ fn bad_meshes_are_refused_with_the_place_named() {
         ),
     ];
     for (name, text, parts) in &obj_cases {
-        assert_refused(name, obj::read("bad.obj", text.as_bytes()), parts);
+        assert_refused(name, obj("bad.obj", text.as_bytes()), parts);
     }
-    assert_refused(
-        "empty",
-        obj::read("bad.obj", b""),
-        &["bad.obj", "no usable face"],
-    );
+    assert_refused("empty", obj("bad.obj", b""), &["bad.obj", "no usable face"]);
 
     let ascii = String::from_utf8(cube_ply_ascii()).unwrap();
     let ply_cases: [(&str, String, &[&str]); 9] = [
@@ -262,16 +267,12 @@ fn bad_meshes_are_refused_with_the_place_named() {
         ("not PLY", "hello\n".to_owned(), &["bad.ply", "line 1"]),
     ];
     for (name, text, parts) in &ply_cases {
-        assert_refused(name, ply::read("bad.ply", text.as_bytes()), parts);
+        assert_refused(name, ply("bad.ply", text.as_bytes()), parts);
     }
     let mut binary = cube_ply_binary(false);
     let first = ply_header("binary_little_endian").len();
     binary[first + 12..first + 16].copy_from_slice(&f32::NAN.to_le_bytes());
-    assert_refused(
-        "binary NaN",
-        ply::read("bad.ply", &binary),
-        &["vertex 1", "NaN"],
-    );
+    assert_refused("binary NaN", ply("bad.ply", &binary), &["vertex 1", "NaN"]);
     // Elements without properties take no room: a count alone must not keep the reader busy.
     let hollow = ascii.replace(
         "element face 6",
@@ -279,7 +280,7 @@ fn bad_meshes_are_refused_with_the_place_named() {
     );
     assert_refused(
         "hollow",
-        ply::read("bad.ply", hollow.as_bytes()),
+        ply("bad.ply", hollow.as_bytes()),
         &["elements announced"],
     );
 }
@@ -323,7 +324,7 @@ fn names_and_paths_are_told_apart() {
 fn coincident_faces_collapse() {
     let mut text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n".to_owned();
     text += &"f 1 2 3\n".repeat(1_000_000);
-    let skin = obj::read("same.obj", text.as_bytes()).unwrap();
+    let skin = obj("same.obj", text.as_bytes()).unwrap();
     assert_eq!(skin.triangles.len(), 1);
     assert!(
         skin.warnings[0].starts_with("999999 repeated"),
@@ -375,9 +376,9 @@ fn mutated_files_never_panic() {
             }
         }
         let result = if kind == 0 {
-            obj::read("bad.obj", &bytes)
+            obj("bad.obj", &bytes)
         } else {
-            ply::read("bad.ply", &bytes)
+            ply("bad.ply", &bytes)
         };
         if let Ok(skin) = result {
             accepted += 1;

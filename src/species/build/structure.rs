@@ -9,7 +9,7 @@ use crate::species::model::{
 use crate::species::pattern::{CuticlePattern, PatternError, PatternLayout, recipe_of};
 
 /// Index of air, for fibers without voids where nothing reads it.
-const AIR: f64 = 1.0003;
+pub(super) const AIR: f64 = 1.0003;
 
 /// The free edge of a scale may stand out by this share of the thin radius; beyond it neighboring
 /// scales of the far side would show through the section and the shape is no longer a fiber.
@@ -116,6 +116,9 @@ impl Reader<'_> {
     }
 
     fn structure(&mut self, layers: &Layers<'_>) -> Option<Structure> {
+        if layers.find("mesh").is_some() {
+            return self.modeled(layers);
+        }
         let diameter_um = self.layered(layers, "diameter_um");
         let aspect = self.layered(layers, "aspect");
         let ior = self.layered(layers, "ior");
@@ -141,6 +144,7 @@ impl Reader<'_> {
             cortex,
             medulla: medulla?,
             materials: materials?,
+            mesh: None,
         })
     }
 
@@ -446,7 +450,7 @@ impl Reader<'_> {
         })
     }
 
-    fn medium(&mut self, layers: &Layers<'_>) -> Option<MedullaKind> {
+    pub(super) fn medium(&mut self, layers: &Layers<'_>) -> Option<MedullaKind> {
         let scattering_per_um = self.layered(layers, "scattering_per_um");
         let asymmetry = self.layered(layers, "asymmetry");
         Some(MedullaKind::Medium {
@@ -455,7 +459,7 @@ impl Reader<'_> {
         })
     }
 
-    fn layered(&mut self, layers: &Layers<'_>, key: &str) -> Option<f64> {
+    pub(super) fn layered(&mut self, layers: &Layers<'_>, key: &str) -> Option<f64> {
         match layers.find(key) {
             Some(item) => number_of(item),
             None => {
@@ -488,7 +492,7 @@ impl Reader<'_> {
         (!inner.tables.is_empty()).then_some(inner)
     }
 
-    fn missing(&mut self, layers: &Layers<'_>, key: &str) {
+    pub(super) fn missing(&mut self, layers: &Layers<'_>, key: &str) {
         if layers.is_misspelt(key) {
             return;
         }

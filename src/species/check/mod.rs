@@ -48,6 +48,8 @@ pub(crate) enum Value {
     Choice(&'static str),
     /// Texts, no two alike.
     Texts(Vec<String>),
+    /// Free keys and their words, in the order of the file.
+    Words(Vec<(String, &'static str)>),
     /// Names of hair classes.
     Names(Vec<String>),
     /// A table.

@@ -1,7 +1,7 @@
 //! Values: of the right type, in range.
 
 use super::citation::Cover;
-use super::{Checker, Value};
+use super::{Checker, Value, join};
 use crate::species::error::closest;
 use crate::species::fields;
 use crate::species::shape::{Choice, Field, Kind, Range, Shape};
@@ -20,6 +20,8 @@ impl Checker<'_> {
             Kind::Texts(most, limit) => self.texts(node, path, *most, *limit),
             Kind::Names => self.names(node, path),
             Kind::Sources => self.sources(node, path),
+            Kind::Setting(range) => self.number(node, path, *range, false),
+            Kind::Words(choices) => self.words(node, path, choices),
             Kind::Choice(choices) => self.choice(node, path, choices),
             Kind::ChoiceOrFile(choices) => match &node.data {
                 Data::Text(text) if text.ends_with(".toml") => self.text(node, path, 1000),
@@ -134,6 +136,24 @@ impl Checker<'_> {
         let hint = hint.map(|name| format!("did you mean \"{name}\"?"));
         self.problems.push(&node.place, message, hint);
         Value::Refused
+    }
+
+    fn words(&mut self, node: &Node, path: &str, choices: &'static [Choice]) -> Value {
+        let Data::Table(table) = &node.data else {
+            return self.wrong(node, path, "a table of names and words");
+        };
+        let mut words = Vec::new();
+        for entry in &table.entries {
+            let path = join(path, &entry.key);
+            if let Value::Choice(word) = self.choice(&entry.node, &path, choices) {
+                words.push((entry.key.clone(), word));
+            }
+        }
+        if words.len() == table.entries.len() {
+            Value::Words(words)
+        } else {
+            Value::Refused
+        }
     }
 
     pub(super) fn subtable(&mut self, node: &Node, shape: &'static Shape, path: &str) -> Value {

@@ -1,8 +1,8 @@
 //! Stanford PLY, ASCII and binary: element `vertex` (x y z, optional nx ny nz, s t or u v) and
-//! element `face` (list `vertex_indices` or `vertex_index`); other elements are read over.
+//! element `face` (list `vertex_indices` or `vertex_index`); other elements are read over. A face property
+//! `part` counts parts, which comments `part 0 cuticle` name.
 
-use super::raw::{MAX_COUNT, RawMesh};
-use super::{Skin, SkinError};
+use super::{MAX_COUNT, MAX_PARTS, MeshFileError, RawMesh};
 use glam::{Vec2, Vec3};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
@@ -11,8 +11,8 @@ use ply_rs_bw::ply::{
 use std::io::Cursor;
 
 /// Reads the bytes of a PLY file. `file` is for messages.
-pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Skin, SkinError> {
-    let fail = |error: ParseError| SkinError::Invalid {
+pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
+    let fail = |error: ParseError| MeshFileError::Invalid {
         file: file.to_owned(),
         place: error.line().map_or_else(
             || "header or data".to_owned(),
@@ -30,7 +30,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Skin, SkinError> {
         let per_element = smallest(element, header.encoding);
         let limit = MAX_COUNT.min(room / per_element);
         if least > limit {
-            return Err(SkinError::TooLarge {
+            return Err(MeshFileError::TooLarge {
                 file: file.to_owned(),
                 what: match element.name.as_str() {
                     "vertex" => "vertices",
@@ -44,7 +44,10 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Skin, SkinError> {
         room -= least * per_element;
     }
 
-    let mut mesh = RawMesh::default();
+    let mut mesh = RawMesh {
+        names: part_names(&header.comments),
+        ..RawMesh::default()
+    };
     let (mut has_normals, mut has_uvs) = (false, false);
     for element in header.elements.values() {
         let has = |name: &str| element.properties.contains_key(name);
@@ -55,7 +58,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Skin, SkinError> {
             "vertex" => {
                 for axis in ["x", "y", "z"] {
                     if !has(axis) {
-                        return Err(SkinError::Invalid {
+                        return Err(MeshFileError::Invalid {
                             file: file.to_owned(),
                             place: "header".to_owned(),
                             reason: format!("element `vertex` has no property `{axis}`"),
@@ -85,11 +88,11 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Skin, SkinError> {
     if !has_uvs {
         mesh.uvs.clear();
     }
-    mesh.into_skin(file, |v| format!("vertex {v}"), |f| format!("face {f}"))
+    Ok(mesh)
 }
 
-fn add_face(file: &str, mesh: &mut RawMesh, row: &Row) -> Result<(), SkinError> {
-    let invalid = |reason: String| SkinError::Invalid {
+fn add_face(file: &str, mesh: &mut RawMesh, row: &Row) -> Result<(), MeshFileError> {
+    let invalid = |reason: String| MeshFileError::Invalid {
         file: file.to_owned(),
         place: format!("face {}", mesh.faces),
         reason,
@@ -107,15 +110,42 @@ fn add_face(file: &str, mesh: &mut RawMesh, row: &Row) -> Result<(), SkinError> 
         )));
     }
     if (mesh.triangles.len() + corners.len()) as u64 > MAX_COUNT {
-        return Err(SkinError::TooLarge {
+        return Err(MeshFileError::TooLarge {
             file: file.to_owned(),
             what: "triangles",
             count: (mesh.triangles.len() + corners.len()) as u64,
             limit: MAX_COUNT,
         });
     }
-    mesh.add_polygon(&corners);
+    if mesh.names.is_empty() {
+        mesh.names.push(String::new());
+    }
+    let part = u32::try_from(row.part)
+        .ok()
+        .filter(|p| (*p as usize) < mesh.names.len());
+    let Some(part) = part else {
+        let reason = format!("belongs to part {}, which no comment names", row.part);
+        return Err(invalid(reason));
+    };
+    mesh.add_polygon(&corners, part);
     Ok(())
+}
+
+/// The names in comments `part 0 cuticle`, in order from 0.
+fn part_names(comments: &[String]) -> Vec<String> {
+    let mut names = Vec::new();
+    for comment in comments {
+        let mut words = comment.split_ascii_whitespace();
+        let is_next = words.next() == Some("part")
+            && words.next().and_then(|n| n.parse().ok()) == Some(names.len());
+        if is_next
+            && (names.len() as u64) < MAX_PARTS
+            && let Some(name) = words.next()
+        {
+            names.push(name.chars().take(100).collect());
+        }
+    }
+    names
 }
 
 /// Bytes that an element takes at least, never 0.
@@ -141,9 +171,9 @@ fn smallest(element: &ElementDef, encoding: Encoding) -> u64 {
 }
 
 /// Says which element was being read.
-fn named(file: &str, element: &ElementDef, error: SkinError) -> SkinError {
+fn named(file: &str, element: &ElementDef, error: MeshFileError) -> MeshFileError {
     match error {
-        SkinError::Invalid { place, reason, .. } => SkinError::Invalid {
+        MeshFileError::Invalid { place, reason, .. } => MeshFileError::Invalid {
             file: file.to_owned(),
             place: format!("element `{}`, {place}", element.name),
             reason,
@@ -169,6 +199,7 @@ struct Row {
     /// x y z nx ny nz u v.
     numbers: [f32; 8],
     corners: Vec<i64>,
+    part: i64,
 }
 
 impl PropertyAccess for Row {
@@ -186,6 +217,11 @@ impl PropertyAccess for Row {
             "nz" => 5,
             "s" | "u" => 6,
             "t" | "v" => 7,
+            "part" => {
+                // Numbers beyond are told apart from every part just as well.
+                self.part = property.to_f32_lossy().map_or(-1, |value| value as i64);
+                return PropertyAccessResult::Set;
+            }
             "vertex_indices" | "vertex_index" => {
                 let Some(corners) = indices(property) else {
                     return PropertyAccessResult::UnsupportedType;

@@ -1,13 +1,12 @@
-//! Wavefront OBJ: `v`, `vt`, `vn` and `f`; everything else (groups, materials, lines) is passed
-//! over. Read line by line here so that every refusal can name its line.
+//! Wavefront OBJ: `v`, `vt`, `vn`, `f`, and the names of `o` and `g`; everything else (materials,
+//! lines) is passed over. Read line by line here so that every refusal can name its line.
 
-use super::raw::{MAX_COUNT, RawMesh};
-use super::{Skin, SkinError};
+use super::{MAX_COUNT, MAX_PARTS, MeshFileError, Places, RawMesh};
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 
 /// Reads the text of an OBJ file. `file` is for messages.
-pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Skin, SkinError> {
+pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
     let mut reader = Reader {
         file,
         ..Reader::default()
@@ -31,11 +30,11 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Skin, SkinError> {
     if lacks_uv {
         mesh.uvs.clear();
     }
-    mesh.into_skin(
-        file,
-        |v| format!("line {}", corner_lines[v]),
-        |f| format!("line {} (face {})", face_lines[f], f + 1),
-    )
+    mesh.places = Places::Lines {
+        vertex: corner_lines,
+        face: face_lines,
+    };
+    Ok(mesh)
 }
 
 #[derive(Default)]
@@ -53,21 +52,24 @@ struct Reader<'a> {
     face_lines: Vec<usize>,
     lacks_normal: bool,
     lacks_uv: bool,
+    /// Part that faces belong to, and the name of the one that begins with the next face.
+    part: u32,
+    pending: Option<String>,
 }
 
 /// A missing texture coordinate or normal.
 const NONE: usize = usize::MAX;
 
 impl Reader<'_> {
-    fn error(&self, reason: String) -> SkinError {
-        SkinError::Invalid {
+    fn error(&self, reason: String) -> MeshFileError {
+        MeshFileError::Invalid {
             file: self.file.to_owned(),
             place: format!("line {}", self.line),
             reason,
         }
     }
 
-    fn take(&mut self, line: &str) -> Result<(), SkinError> {
+    fn take(&mut self, line: &str) -> Result<(), MeshFileError> {
         let mut words = line.split_ascii_whitespace();
         match words.next() {
             Some("v") => {
@@ -80,33 +82,38 @@ impl Reader<'_> {
                     );
                 }
                 self.positions.push((position, self.line));
-                self.limit("vertices", self.positions.len())
+                self.limit("vertices", self.positions.len(), MAX_COUNT)
             }
             Some("vt") => {
                 // One number is legal; a missing second one is 0.
                 let [u, v] = self.numbers(words.chain(["0"]), "vt")?;
                 self.uvs.push(Vec2::new(u, v));
-                self.limit("texture coordinates", self.uvs.len())
+                self.limit("texture coordinates", self.uvs.len(), MAX_COUNT)
             }
             Some("vn") => {
                 let [x, y, z] = self.numbers(words, "vn")?;
                 self.normals.push(Vec3::new(x, y, z));
-                self.limit("normals", self.normals.len())
+                self.limit("normals", self.normals.len(), MAX_COUNT)
             }
             Some("f") => self.face(words),
+            // Groups of several names belong to the first.
+            Some("o" | "g") => {
+                self.pending = words.next().map(clip);
+                Ok(())
+            }
             _ => Ok(()),
         }
     }
 
-    fn limit(&self, what: &'static str, count: usize) -> Result<(), SkinError> {
-        if count as u64 <= MAX_COUNT {
+    fn limit(&self, what: &'static str, count: usize, limit: u64) -> Result<(), MeshFileError> {
+        if count as u64 <= limit {
             return Ok(());
         }
-        Err(SkinError::TooLarge {
+        Err(MeshFileError::TooLarge {
             file: self.file.to_owned(),
             what,
             count: count as u64,
-            limit: MAX_COUNT,
+            limit,
         })
     }
 
@@ -114,7 +121,7 @@ impl Reader<'_> {
         &self,
         mut words: impl Iterator<Item = &'w str>,
         what: &str,
-    ) -> Result<[f32; N], SkinError> {
+    ) -> Result<[f32; N], MeshFileError> {
         let mut numbers = [0.0; N];
         for number in &mut numbers {
             let word = words
@@ -127,7 +134,7 @@ impl Reader<'_> {
         Ok(numbers)
     }
 
-    fn face<'w>(&mut self, words: impl Iterator<Item = &'w str>) -> Result<(), SkinError> {
+    fn face<'w>(&mut self, words: impl Iterator<Item = &'w str>) -> Result<(), MeshFileError> {
         let mut corners = Vec::new();
         for word in words {
             let corner = self.corner(word)?;
@@ -137,13 +144,19 @@ impl Reader<'_> {
             let count = corners.len();
             return Err(self.error(format!("a face of {count} corners: at least 3 are needed")));
         }
-        self.mesh.add_polygon(&corners);
+        if let Some(name) = self.pending.take() {
+            self.part = self.mesh.part_named(&name);
+        } else if self.mesh.names.is_empty() {
+            self.part = self.mesh.part_named("");
+        }
+        self.limit("parts", self.mesh.names.len(), MAX_PARTS)?;
+        self.mesh.add_polygon(&corners, self.part);
         self.face_lines.push(self.line);
-        self.limit("triangles", self.mesh.triangles.len())
+        self.limit("triangles", self.mesh.triangles.len(), MAX_COUNT)
     }
 
     /// `position`, `position/uv`, `position//normal` or `position/uv/normal`.
-    fn corner(&mut self, word: &str) -> Result<u32, SkinError> {
+    fn corner(&mut self, word: &str) -> Result<u32, MeshFileError> {
         let mut parts = word.split('/');
         let position = self.index(parts.next(), word, "vertex", self.positions.len())?;
         let uv = self.index(parts.next(), word, "texture coordinate", self.uvs.len())?;
@@ -175,7 +188,7 @@ impl Reader<'_> {
         word: &str,
         what: &str,
         count: usize,
-    ) -> Result<usize, SkinError> {
+    ) -> Result<usize, MeshFileError> {
         let Some(text) = text.filter(|t| !t.is_empty()) else {
             return Ok(NONE);
         };

@@ -1,11 +1,11 @@
 //! The only file that names the acceleration structure's crate: what it cannot take is refused
 //! here, and its order of traversal is hidden from results.
 //!
-//! Scenes are in millimeters because the crate's nodes ignore everything nearer than a fixed
-//! 1e-4 units: a tenth of a micrometer then, well below the width of a hair. In meters it would be
+//! Scenes are in millimeters, and meshes of fibers in units of the radius, because the crate's nodes ignore everything nearer than a fixed
+//! 1e-4 units: a tenth of a micrometer in a scene, well below the width of a hair. In meters it would be
 //! a tenth of a millimeter, and scattered rays would pass through the strands around them.
 
-use super::SceneError;
+use crate::sampling::hash64;
 use glam::{UVec2, Vec3, Vec3A};
 use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
 use obvhs::ray::Ray as BoxRay;
@@ -13,11 +13,20 @@ use obvhs::{Boundable, BvhBuildParams, aabb::Aabb};
 use std::time::Duration;
 
 /// Largest coordinate taken, scene units. Box areas of larger ones overflow single precision.
-pub(super) const LIMIT: f32 = 1e6;
+pub(crate) const LIMIT: f32 = 1e6;
 
 /// Most distinct primitives allowed in exactly the same box. Building is quadratic in this number,
 /// and every ray through the box tests all of them.
 const COINCIDENT_LIMIT: usize = 64;
+
+/// Boxes that no hierarchy is built over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum AccelError {
+    /// Something not finite or beyond the limit, here.
+    Coordinates { at: Vec3 },
+    /// So many primitives in exactly the same box, here.
+    Coincident { count: usize, at: Vec3 },
+}
 
 /// A straight path: unit direction, scene units.
 #[derive(Clone, Copy, Debug)]
@@ -38,18 +47,19 @@ impl Boundable for Bounds {
 
 /// A bounding volume hierarchy over primitives that the caller keeps, in the order of
 /// [`Accel::order`].
-pub(super) struct Accel {
+#[derive(Clone, Debug)]
+pub(crate) struct Accel {
     bvh: CwBvh,
 }
 
 impl Accel {
     /// * `boxes`: corners of each primitive's box.
     /// * Fails on non-finite or huge coordinates and on too many primitives in one place.
-    pub(super) fn build(boxes: &[(Vec3, Vec3)]) -> Result<Self, SceneError> {
+    pub(crate) fn build(boxes: &[(Vec3, Vec3)]) -> Result<Self, AccelError> {
         for (lo, hi) in boxes {
             let reach = lo.abs().max(hi.abs()).max_element();
             if !(lo.is_finite() && hi.is_finite()) || reach > LIMIT {
-                return Err(SceneError::Coordinates { at: *lo });
+                return Err(AccelError::Coordinates { at: *lo });
             }
         }
         refuse_crowds(boxes)?;
@@ -72,7 +82,7 @@ impl Accel {
     }
 
     /// Index in the caller's original order of each primitive in traversal order.
-    pub(super) fn order(&self) -> &[u32] {
+    pub(crate) fn order(&self) -> &[u32] {
         &self.bvh.primitive_indices
     }
 
@@ -82,7 +92,7 @@ impl Accel {
     ///   is no hit at or before `best`.
     /// * Of equal distances the lowest original index wins, whatever the shape of the tree.
     #[inline(always)]
-    pub(super) fn closest(
+    pub(crate) fn closest(
         &self,
         ray: &Ray,
         limit: f32,
@@ -120,7 +130,7 @@ impl Accel {
 
     /// Whether anything is hit in front of `limit`; stops at the first hit found.
     #[inline(always)]
-    pub(super) fn any(
+    pub(crate) fn any(
         &self,
         ray: &Ray,
         limit: f32,
@@ -156,22 +166,29 @@ fn box_ray(ray: &Ray, limit: f32) -> BoxRay {
     BoxRay::new(Vec3A::from(ray.origin), dir, 0.0, limit)
 }
 
-fn refuse_crowds(boxes: &[(Vec3, Vec3)]) -> Result<(), SceneError> {
+fn refuse_crowds(boxes: &[(Vec3, Vec3)]) -> Result<(), AccelError> {
     let key = |i: u32| {
         let (lo, hi) = boxes[i as usize];
         [lo.x, lo.y, lo.z, hi.x, hi.y, hi.z].map(f32::to_bits)
     };
     let mut hashed: Vec<(u64, u32)> = (0..boxes.len() as u32)
-        .map(|i| (super::hash_bits(&key(i)), i))
+        .map(|i| (hash_bits(&key(i)), i))
         .collect();
     hashed.sort_unstable();
     for group in hashed.chunk_by(|a, b| a.0 == b.0) {
         if group.len() > COINCIDENT_LIMIT {
-            return Err(SceneError::Coincident {
+            return Err(AccelError::Coincident {
                 count: group.len(),
                 at: boxes[group[0].1 as usize].0,
             });
         }
     }
     Ok(())
+}
+
+/// A hash of some words.
+pub(crate) fn hash_bits(words: &[u32]) -> u64 {
+    words.iter().fold(0x5851_f42d_4c95_7f2d, |h, &w| {
+        hash64(h ^ u64::from(w).wrapping_mul(0x9e37_79b9_7f4a_7c15)).wrapping_add(u64::from(w))
+    })
 }

@@ -1,0 +1,233 @@
+//! From surfaces to the tile that rays are traced through, and the checks that need all of it.
+
+use super::error::{MeshError, Places};
+use super::overlap::crossing_pairs;
+use super::solid::{Bound, Solid};
+use super::topology::{Shell, close};
+use super::{OVERLAP, Triangles};
+use crate::accel::{Accel, AccelError};
+use crate::fiber::{MeshPart, Part, Region};
+use crate::species::FiberMesh;
+use glam::{DVec3, Vec3};
+use std::collections::HashMap;
+
+/// Room around boxes, in radii: origins and directions are rounded to single precision, 6e-8 of ways
+/// up to some hundred radii.
+const ROOM: f32 = 1e-5;
+
+/// A triangle of a tile, counterclockwise seen from outside.
+#[derive(Clone, Debug)]
+pub(super) struct Triangle {
+    pub(super) corners: [DVec3; 3],
+    /// Unit, outward.
+    pub(super) normal: DVec3,
+    /// Regions outside and inside.
+    pub(super) sides: [Region; 2],
+    pub(super) bound: Bound,
+    pub(super) part: Part,
+    /// The triangle of the mesh that this is an image of.
+    pub(super) source: u32,
+}
+
+/// Checks a mesh and prepares it for tracing.
+pub(super) fn build(mesh: &FiberMesh, is_medium: bool) -> Result<Triangles, MeshError> {
+    let mut solid = Solid::new(mesh, is_medium)?;
+    let (shells, shell_of) = close(&mut solid)?;
+    let mut tile = images(&solid);
+    refuse_crossings(&solid, &tile)?;
+    let boxes: Vec<(Vec3, Vec3)> = tile.iter().map(|t| box_of(&t.corners)).collect();
+    let accel = Accel::build(&boxes).map_err(|error| {
+        let at = match error {
+            AccelError::Coordinates { at } | AccelError::Coincident { at, .. } => at,
+        };
+        let mut places = Places::default();
+        solid.note(&mut places, &[at.as_dvec3()]);
+        MeshError::Crowded {
+            file: solid.file(),
+            places,
+        }
+    })?;
+    tile = (accel.order().iter())
+        .map(|&i| tile[i as usize].clone())
+        .collect();
+    let (lo, hi) = tile
+        .iter()
+        .filter(|t| t.bound == Bound::Outer)
+        .flat_map(|t| t.corners)
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| {
+            (lo.min(p), hi.max(p))
+        });
+    let half = 0.5 * solid.radius_um * (hi - lo);
+    let voids = || shells.iter().filter(|s| s.bound == Bound::Void);
+    let mut triangles = Triangles {
+        accel,
+        period: solid.period,
+        radius_um: solid.radius_um,
+        air_fraction: air_fraction(&solid, voids().map(|s| s.volume).sum()),
+        void_count: voids().count(),
+        semi_axes_um: [half.x, half.y],
+        parts: parts(&solid),
+        warnings: std::mem::take(&mut solid.warnings),
+        tile,
+    };
+    nest(&solid, &shells, &shell_of, &mut triangles)?;
+    Ok(triangles)
+}
+
+/// All triangles and their images that touch the tile.
+fn images(solid: &Solid<'_>) -> Vec<Triangle> {
+    let mut tile = Vec::with_capacity(solid.faces.len() * 5 / 4);
+    let has_cortex = solid.faces.iter().any(|f| f.bound == Bound::Cortex);
+    let under_cuticle = if has_cortex {
+        Region::Cuticle
+    } else {
+        Region::Cortex
+    };
+    let inside_of = [under_cuticle, Region::Cortex, Region::Medulla, Region::Void];
+    let (lo, hi) = (-2.0 * OVERLAP, solid.period + 2.0 * OVERLAP);
+    for (source, face) in solid.faces.iter().enumerate() {
+        let corners = solid.corners(face);
+        let [a, b, c] = corners;
+        let Some(normal) = (b - a).cross(c - a).try_normalize() else {
+            // Nothing can be hit where there is no area; the edge belongs to both neighbors.
+            continue;
+        };
+        let z = corners.map(|p| p.z);
+        let (least, most) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
+        let first = ((lo - most) / solid.period).ceil();
+        let last = ((hi - least) / solid.period).floor();
+        let mut image = first;
+        while image <= last {
+            tile.push(Triangle {
+                corners: corners.map(|p| p + image * solid.period * DVec3::Z),
+                normal,
+                sides: [Region::Outside, inside_of[face.bound as usize]],
+                bound: face.bound,
+                part: face.part,
+                source: source as u32,
+            });
+            image += 1.0;
+        }
+    }
+    tile
+}
+
+fn box_of(corners: &[DVec3; 3]) -> (Vec3, Vec3) {
+    let [a, b, c] = corners.map(|p| p.as_vec3());
+    (a.min(b).min(c) - ROOM, a.max(b).max(c) + ROOM)
+}
+
+/// Depth below which surfaces only touch, in radii: some roundings of single precision.
+const TOUCH: f64 = 1e-6;
+
+fn refuse_crossings(solid: &Solid<'_>, tile: &[Triangle]) -> Result<(), MeshError> {
+    let corners: Vec<[DVec3; 3]> = tile.iter().map(|t| t.corners).collect();
+    let mut found: HashMap<(Bound, Bound), (usize, Places)> = HashMap::new();
+    let tolerance = TOUCH * (1.0 + solid.period);
+    let counted = crossing_pairs(&corners, tolerance, |a, b| {
+        let bounds = [tile[a].bound, tile[b].bound];
+        let key = (bounds[0].max(bounds[1]), bounds[0].min(bounds[1]));
+        let (count, places) = found.entry(key).or_default();
+        *count += 1;
+        solid.note(places, &[corners[a], corners[b]].concat());
+    });
+    if let Err(crowded) = counted {
+        let mut places = Places::default();
+        solid.note(&mut places, &corners[crowded.triangle]);
+        return Err(MeshError::Crowded {
+            file: solid.file(),
+            places,
+        });
+    }
+    let first = found.into_iter().min_by_key(|(key, _)| *key);
+    match first {
+        None => Ok(()),
+        Some(((part, other), (count, places))) => Err(MeshError::Crossing {
+            file: solid.file(),
+            part: part.name(),
+            other: other.name(),
+            count,
+            places,
+        }),
+    }
+}
+
+/// Finds the region around each shell, from the outermost kind inward: what is inside of a kind that
+/// was placed before.
+fn nest(
+    solid: &Solid<'_>,
+    shells: &[Shell],
+    shell_of: &[u32],
+    triangles: &mut Triangles,
+) -> Result<(), MeshError> {
+    let mut around = vec![Region::Outside; shells.len()];
+    for bound in [Bound::Cortex, Bound::Medulla, Bound::Void] {
+        for (index, shell) in shells.iter().enumerate() {
+            if shell.bound != bound {
+                continue;
+            }
+            let corner = solid.points[shell.corner as usize];
+            around[index] = triangles.region_by(corner, &|t| t.bound < bound);
+            if around[index] == Region::Outside {
+                let mut places = Places::default();
+                solid.note(&mut places, &[corner]);
+                return Err(MeshError::Outside {
+                    file: solid.file(),
+                    part: bound.name(),
+                    places,
+                });
+            }
+        }
+        for t in triangles.tile.iter_mut().filter(|t| t.bound == bound) {
+            t.sides[0] = around[shell_of[t.source as usize] as usize];
+        }
+    }
+    Ok(())
+}
+
+fn air_fraction(solid: &Solid<'_>, volume: f64) -> f64 {
+    let voids = solid.faces.iter().filter(|f| f.bound == Bound::Void);
+    let reach = voids
+        .flat_map(|f| solid.corners(f))
+        .map(|p| p.truncate().length_squared())
+        .fold(0.0, f64::max);
+    if reach > 0.0 {
+        volume / (std::f64::consts::PI * reach * solid.period)
+    } else {
+        0.0
+    }
+}
+
+fn parts(solid: &Solid<'_>) -> Vec<MeshPart> {
+    let kinds = [
+        ("cuticle", Part::Scale),
+        ("riser", Part::Riser),
+        ("cortex", Part::Cortex),
+        ("medulla", Part::Medulla),
+        ("void", Part::Void),
+    ];
+    let part = |(name, of)| {
+        let mut index = HashMap::new();
+        let mut part = MeshPart {
+            name,
+            points: Vec::new(),
+            triangles: Vec::new(),
+        };
+        let faces = solid.faces.iter();
+        for face in faces.filter(|f| f.part == of) {
+            let corners = face.corners.map(|v| {
+                *index.entry(v).or_insert_with(|| {
+                    part.points.push(solid.radius_um * solid.points[v as usize]);
+                    part.points.len() as u32 - 1
+                })
+            });
+            part.triangles.push(corners);
+        }
+        part
+    };
+    kinds
+        .map(part)
+        .into_iter()
+        .filter(|part| !part.triangles.is_empty())
+        .collect()
+}
