@@ -111,10 +111,19 @@ impl<'a> Tree<'a> {
         if end - begin <= LEAF {
             return;
         }
-        let size = hi - lo;
-        let axis = if size.x >= size.y && size.x >= size.z {
+        // Across the axis along which the triangles overlap least: not the longest one of the box,
+        // as scales are slender.
+        let (mut extent, mut first, mut last) = (DVec3::ZERO, DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for &t in &self.order[begin..end] {
+            let [a, b, c] = triangles[t as usize];
+            let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
+            extent += hi - lo;
+            (first, last) = (first.min(lo + hi), last.max(lo + hi));
+        }
+        let share = (last - first) / (extent + f64::MIN_POSITIVE);
+        let axis = if share.x >= share.y && share.x >= share.z {
             0
-        } else if size.y >= size.z {
+        } else if share.y >= share.z {
             1
         } else {
             2
