@@ -22,7 +22,7 @@ use crate::progress::{Cancel, Silent};
 use crate::render::RenderError;
 use crate::scene::SceneError;
 use crate::skin::SkinError;
-use crate::species::{HairClass, Species};
+use crate::species::{HairClass, Species, Station};
 use crate::table::{TableError, draw_lobe};
 
 /// A kind of picture of an animal.
@@ -165,6 +165,15 @@ impl GalleryError {
     }
 }
 
+/// The station where a hair is thickest, the last of equals: where it has all its parts.
+fn widest(class: &HairClass) -> &Station {
+    let diameter = |station: &Station| station.structure.diameter_um;
+    // A validated class has a station.
+    let first = &class.stations[0];
+    let wider = |a, b| if diameter(b) >= diameter(a) { b } else { a };
+    class.stations.iter().fold(first, wider)
+}
+
 /// Makes pictures of animals.
 pub struct Studio<'a> {
     /// How much work goes into them.
@@ -176,7 +185,7 @@ pub struct Studio<'a> {
 }
 
 impl Studio<'_> {
-    /// One picture: of the last station of a class of hair, of its scattering or of the fur.
+    /// One picture: of the widest station of a class of hair, of its scattering or of the fur.
     ///
     /// # Errors
     /// Whatever the parts of the animal do not allow, or canceled.
@@ -202,8 +211,7 @@ impl Studio<'_> {
             Column::Lobe => return self.lobe(species, class, size),
             Column::Swatch => return swatch::draw(self, species, size),
         };
-        // A validated class has a station.
-        let station = &class.stations[class.stations.len() - 1];
+        let station = widest(class);
         let fiber = Fiber::build(&station.structure, 0)?;
         let subject = Subject {
             fiber: &fiber,
@@ -231,7 +239,7 @@ impl Studio<'_> {
         class: &HairClass,
         size: (usize, usize),
     ) -> Result<Canvas, GalleryError> {
-        let station = &class.stations[class.stations.len() - 1];
+        let station = widest(class);
         let baked = station_table(
             species,
             class,

@@ -133,7 +133,7 @@ pub fn page(page: &Page) -> String {
 
 /// What the pictures of a class show, in words.
 fn facts(species: &Species, class: &HairClass) -> Vec<String> {
-    let station = &class.stations[class.stations.len() - 1];
+    let station = super::widest(class);
     let Ok(fiber) = Fiber::build(&station.structure, 0) else {
         return Vec::new();
     };
