@@ -1,4 +1,5 @@
-//! Nanoseconds a boundary search: `cargo bench --bench fiber`.
+//! Milliseconds to build a fiber of the library and nanoseconds a boundary search:
+//! `cargo bench --bench fiber`.
 //!
 //! Segments of real photon paths (smooth Fresnel choice at every boundary) are recorded first and then
 //! replayed, so that only `next_hit` is timed; the best of several rounds counts.
@@ -13,6 +14,7 @@ use vair::sampling::Rng;
 type Query = (DVec3, DVec3, Region, Option<HitState>);
 
 fn main() {
+    builds();
     for name in ["glass-cylinder", "human", "mink", "polar-bear", "red-fox"] {
         let species = match vair::species::load(name, &[]) {
             Ok(species) => species,
@@ -28,6 +30,34 @@ fn main() {
             }
         }
     }
+}
+
+/// Time to build the fibers of the library: the slowest, and all.
+fn builds() {
+    let (mut all, mut count) = (0.0, 0);
+    let mut slowest = (0.0, String::new());
+    for id in vair::species::ids() {
+        let Ok(species) = vair::species::load(id, &[]) else {
+            continue;
+        };
+        for class in &species.classes {
+            for station in &class.stations {
+                let start = Instant::now();
+                let fiber = black_box(Fiber::build(&station.structure, 0));
+                let seconds = start.elapsed().as_secs_f64();
+                if fiber.is_ok() && seconds > slowest.0 {
+                    slowest = (seconds, format!("{id} {} at {}", class.name, station.at));
+                }
+                (all, count) = (all + seconds, count + 1);
+            }
+        }
+    }
+    println!(
+        "{count} fibers built in {:.0} ms each, the slowest in {:.0} ms: {}",
+        1e3 * all / f64::from(count),
+        1e3 * slowest.0,
+        slowest.1
+    );
 }
 
 fn report(species: &str, class: &str, fiber: &Fiber) {
