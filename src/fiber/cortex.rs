@@ -44,11 +44,11 @@ const STREAK_UM: f64 = 1.5;
 const STREAK_LENGTH_UM: f64 = 25.0;
 
 impl Pigment {
-    /// * `semi`: semi-axes of the section, micrometers.
+    /// * `semi`: semi-axes of the section, micrometers; `radii`: of its outline, in their units.
     /// * `ratio`: radius of the medulla, 0 for none.
     pub(super) fn new(
         structure: &Structure,
-        semi: [f64; 2],
+        (semi, radii): ([f64; 2], &[f64]),
         ratio: f64,
         period: f64,
         seed: u64,
@@ -58,7 +58,7 @@ impl Pigment {
         Self {
             ratio,
             walls: structure.medulla.pigment,
-            lean: (!even).then(|| Lean::new(cortex.toward_medulla, cortex.clear_rim, ratio)),
+            lean: (!even).then(|| Lean::new(cortex.toward_medulla, cortex.clear_rim, ratio, radii)),
             streaks: (cortex.streaks > 0.0)
                 .then(|| Box::new(Streaks::new(cortex.streaks, semi, period, seed))),
         }
@@ -142,17 +142,23 @@ impl Pigment {
 }
 
 impl Lean {
-    /// `1 + b (1 - 2 u)` up to the rim, with u from 0 at the medulla to 1 at the mean surface, over its
-    /// mean.
-    fn new(b: f64, clear_rim: f64, ratio: f64) -> Self {
-        let width = 1.0 - ratio;
-        let rim = 1.0 - clear_rim * width;
+    /// `1 + b (1 - 2 u)` up to the rim, with u from 0 at the medulla to 1 at the farthest part of the mean
+    /// surface, over its mean.
+    fn new(b: f64, clear_rim: f64, ratio: f64, radii: &[f64]) -> Self {
+        let outer = radii.iter().fold(0.0, |m: f64, &r| m.max(r));
+        let width = outer - ratio;
+        let rim = outer - clear_rim * width;
         let slope = 2.0 * b / width;
         let base = 1.0 + b + slope * ratio;
-        // Integral of (base - slope rho) rho from ratio to rim, over that of rho from ratio to 1.
-        let first = 0.5 * base * (rim * rim - ratio * ratio);
-        let second = slope / 3.0 * (rim.powi(3) - ratio.powi(3));
-        let mean = (first - second) / (0.5 * (1.0 - ratio * ratio));
+        // Integral of (base - slope rho) rho from ratio to the rim, over that of rho to the surface.
+        let (mut sum, mut area) = (0.0, 0.0);
+        for &radius in radii {
+            let end = radius.min(rim);
+            sum += 0.5 * base * (end * end - ratio * ratio);
+            sum -= slope / 3.0 * (end.powi(3) - ratio.powi(3));
+            area += 0.5 * (radius * radius - ratio * ratio);
+        }
+        let mean = sum / area;
         Self {
             base: base / mean,
             rise: slope / mean,

@@ -151,7 +151,13 @@ impl Fiber {
             seed,
         )?;
         let semi = [section.a, section.b];
-        let pigment = Pigment::new(structure, semi, medulla.ratio, period_um, seed);
+        let pigment = Pigment::new(
+            structure,
+            (semi, &section.radii()),
+            medulla.ratio,
+            period_um,
+            seed,
+        );
         let optics = OpticalParts::new(structure, medulla.medium.as_ref());
         Ok(Self {
             structure: structure.clone(),

@@ -129,6 +129,17 @@ impl Section {
         self.outline.as_ref().map_or(1.0, |o| o.at(psi))
     }
 
+    /// Radii evenly round the outline; one of them for an ellipse.
+    pub(super) fn radii(&self) -> Vec<f64> {
+        const COUNT: u32 = 256;
+        let at = |i: u32| self.rho(TAU * f64::from(i) / f64::from(COUNT));
+        if self.is_ellipse() {
+            vec![1.0]
+        } else {
+            (0..COUNT).map(at).collect()
+        }
+    }
+
     /// Half the extent along x and y, micrometers.
     pub(super) fn half_extents(&self) -> [f64; 2] {
         let Some(outline) = &self.outline else {

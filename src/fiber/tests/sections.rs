@@ -131,3 +131,34 @@ fn a_section_that_folds_is_refused() {
         }
     }
 }
+
+/// Parallel lines take an even sample of the volume: however the pigment leans, its mean over the
+/// cortex is 1, beyond the ellipse of the section too.
+#[test]
+fn leaning_pigment_keeps_its_mean_in_every_shape() {
+    for (section, aspect) in SHAPES {
+        let mut structure = bare(section, aspect);
+        structure.cortex.toward_medulla = 0.6;
+        structure.cortex.clear_rim = 0.1;
+        let fiber = Fiber::build(&structure, 0).unwrap();
+        let (mut pigment, mut way) = (0.0, 0.0);
+        let radius = fiber.bounding_radius_um();
+        let count = 4000;
+        for i in 0..count {
+            let dir = glam::DVec3::new(0.8, 0.6, 0.0);
+            let h = radius * (2.0 * (f64::from(i) + 0.5) / f64::from(count) - 1.0);
+            let mut p = glam::DVec3::new(-0.6 * h, 0.8 * h, 3.0) - 3.0 * radius * dir;
+            let (mut region, mut from) = (Region::Outside, None);
+            while let Some(hit) = fiber.next_hit(p, dir, region, from) {
+                if region == Region::Cortex {
+                    pigment += hit.pigment_um;
+                    way += hit.t;
+                }
+                p += hit.t * dir;
+                (region, from) = (hit.to, Some(hit.state));
+            }
+        }
+        let mean: f64 = pigment / way;
+        assert!((mean - 1.0).abs() < 2e-3, "{section:?}: {mean}");
+    }
+}
