@@ -1,0 +1,127 @@
+//! A fiber exported as glTF and baked as a mesh scatters like the fiber it came from: two tracers that
+//! share nothing but the physics at boundaries.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use vair::bake::{Settings, bake};
+use vair::fiber::Fiber;
+use vair::progress::{Cancel, Silent};
+use vair::species::{self, Structure};
+use vair::table::{Provenance, StructureTable};
+
+const SEED: u64 = 3;
+
+fn structure(name: &str, class: usize, set: &[String]) -> Structure {
+    let species = species::load(name, set).unwrap();
+    let station = species.classes[class].stations.last().unwrap();
+    station.structure.clone()
+}
+
+fn table(fiber: &Fiber, seed: u64) -> StructureTable {
+    let settings = Settings {
+        photons: 400_000,
+        bins: 4,
+        face: 8,
+        seed,
+        levels: vec![0.0],
+        fold: false,
+        ..Settings::cone()
+    };
+    let (progress, cancel) = (Silent, Cancel::default());
+    let baked = bake(fiber, &settings, Provenance::default(), &progress, &cancel);
+    baked.unwrap().table
+}
+
+/// The fiber written as a .glb file and read back by the two lines that the command prints.
+fn remodeled(fiber: &Fiber, name: &str, class: usize, more: &[&str]) -> Fiber {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fiber.glb");
+    std::fs::write(&path, fiber.to_glb(name)).unwrap();
+    let mut set = vec![
+        format!("structure.mesh.file={}", path.display()),
+        format!("structure.mesh.period_um={}", fiber.period_um()),
+    ];
+    set.extend(more.iter().map(|s| (*s).to_owned()));
+    let fiber = Fiber::build(&structure(name, class, &set), 0).unwrap();
+    assert_eq!(fiber.warnings(), [""; 0], "{name}");
+    fiber
+}
+
+/// Deviation of chi-squared from its mean, in standard deviations, over all texels of all nodes that
+/// have enough photons, mirror images together, and one group for the rest of a node.
+fn deviation(a: &StructureTable, b: &StructureTable) -> f64 {
+    let (mut chi2, mut groups) = (0.0, 0.0);
+    let cube = vair::math::unicube::Unicube::new(a.res);
+    for node in 0..a.nodes.len() {
+        let photons = [a, b].map(|t| t.ledger(node, 0).photons());
+        let mut add = |n: [f64; 2]| {
+            if n[0] + n[1] > 0.0 {
+                let share = (n[0] + n[1]) / (photons[0] + photons[1]);
+                chi2 += (0..2)
+                    .map(|i| (n[i] - share * photons[i]).powi(2) / (share * photons[i]))
+                    .sum::<f64>();
+                groups += 1.0;
+            }
+        };
+        let mut rest = [0.0; 2];
+        for texel in 0..a.texels() {
+            let mirror = cube.mirrored(texel);
+            if mirror < texel {
+                continue;
+            }
+            let both = if mirror == texel { 1 } else { 2 };
+            let texels = &[texel, mirror][..both];
+            let count = |t: &StructureTable, photons: f64| -> f64 {
+                let map = t.map(node, 0);
+                texels.iter().map(|&i| f64::from(map[i])).sum::<f64>() * photons
+            };
+            let n = [count(a, photons[0]), count(b, photons[1])];
+            if n[0] + n[1] >= 40.0 {
+                add(n);
+            } else {
+                rest = [rest[0] + n[0], rest[1] + n[1]];
+            }
+        }
+        add(rest);
+    }
+    (chi2 - groups) / (2.0 * groups).sqrt()
+}
+
+fn compare(name: &str, class: usize) {
+    let fiber = Fiber::build(&structure(name, class, &[]), SEED).unwrap();
+    let truth = table(&fiber, 1);
+    let mesh = table(&remodeled(&fiber, name, class, &[]), 2);
+    let lost: u64 = (0..4).map(|node| mesh.ledger(node, 0).lost).sum();
+    let emitted: u64 = (0..4).map(|node| mesh.ledger(node, 0).emitted).sum();
+    assert!(lost as f64 <= 1e-5 * emitted as f64, "{name}: {lost} lost");
+    let off = deviation(&truth, &mesh);
+    eprintln!("{name} {class}: {off:.2} sigma");
+    assert!(off < 4.0, "{name}: {off} standard deviations");
+}
+
+#[test]
+fn human() {
+    compare("human", 0);
+}
+
+/// Diamond petals and a ladder.
+#[test]
+fn mink_underhair() {
+    compare("mink", 1);
+}
+
+/// Bubbles.
+#[test]
+fn polar_bear() {
+    compare("polar-bear", 0);
+}
+
+/// The comparison sees an index that is off by a thirtieth.
+#[test]
+fn a_wrong_index_is_seen() {
+    let fiber = Fiber::build(&structure("human", 0, &[]), SEED).unwrap();
+    let wrong = remodeled(&fiber, "human", 0, &["structure.ior=1.5"]);
+    let off = deviation(&table(&fiber, 1), &table(&wrong, 2));
+    eprintln!("index 1.50: {off:.2} sigma");
+    assert!(off > 20.0, "{off}");
+}
