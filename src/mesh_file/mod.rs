@@ -1,6 +1,6 @@
 //! Triangle meshes from files: Wavefront OBJ, Stanford PLY and glTF 2.0.
 //!
-//! In: a path or the bytes of a file. Out: a [`RawMesh`], indices in range and numbers finite, with
+//! In: a path or the bytes of a file. Out: triangles, indices in range and numbers finite, with
 //! the names of its parts; what it means is up to the caller. Nothing is allocated for a count before
 //! the file is known to be long enough for it, and every refusal names the place.
 
