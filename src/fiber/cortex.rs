@@ -129,7 +129,14 @@ impl Pigment {
             }
             (None, Some(lean)) => lean.integral(ray, t0, t1),
             (Some(streaks), lean) => {
-                let mut sum = 0.0;
+                let (mut sum, mut within) = (0.0, (t0, t1));
+                if let Some(lean) = lean {
+                    let Some((a, b)) = ray.inside_circle(lean.rim) else {
+                        return 0.0;
+                    };
+                    within = (t0.max(a), t1.min(b));
+                }
+                let (t0, t1) = within;
                 streaks.walk(ray, t0, t1, |streak, t0, t1| {
                     let p = ray.at(0.5 * (t0 + t1));
                     let at = lean.as_ref().map_or(1.0, |lean| density(lean, p));
@@ -192,18 +199,20 @@ impl Lean {
         let foot = -ray.b / ray.a;
         let k = (ray.c - ray.b * ray.b / ray.a).max(0.0);
         let root = ray.a.sqrt();
-        let upto = |t: f64| {
+        let at = |t: f64| {
             let s = root * (t - foot);
-            let rho = (s * s + k).sqrt();
-            // asinh without the cancellation of s + rho at negative s.
-            let log = if k > 1e-24 {
-                (s / k.sqrt()).asinh()
-            } else {
-                0.0
-            };
-            0.5 * (s * rho + k * log) / root
+            (s, (s * s + k).sqrt())
         };
-        flat - self.rise * (upto(t1) - upto(t0))
+        let ((s0, rho0), (s1, rho1)) = (at(t0), at(t1));
+        // s + rho, without its cancellation before the foot.
+        let sum = |s: f64, rho: f64| if s < 0.0 { k / (rho - s) } else { rho + s };
+        let log = if k > 1e-20 {
+            k * (sum(s1, rho1) / sum(s0, rho0)).ln()
+        } else {
+            0.0
+        };
+        let radius = 0.5 * (s1 * rho1 - s0 * rho0 + log) / root;
+        flat - self.rise * radius
     }
 }
 
@@ -295,3 +304,6 @@ impl Streaks {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -42,8 +42,15 @@ const WIDTH: f64 = 0.92;
 
 impl Ladder {
     /// * `ratio`: radius of the medulla in units of the semi-axes.
+    /// * `reach`: radius that voids may reach, no more.
     /// * `count`: rungs in a period.
-    pub(super) fn new(ratio: f64, period: f64, count: usize, septum_um: f64, seed: u64) -> Self {
+    pub(super) fn new(
+        (ratio, reach): (f64, f64),
+        period: f64,
+        count: usize,
+        septum_um: f64,
+        seed: u64,
+    ) -> Self {
         let pitch = period / count as f64;
         // Walls are as thick as asked in the mean; a thin neighbor of a shifted void keeps a third.
         let half = 0.5 * (pitch - septum_um);
@@ -55,7 +62,7 @@ impl Ladder {
                 Puck {
                     center: pitch * (k as f64 + 0.5) + shift,
                     half,
-                    radius: WIDTH * ratio * breadth,
+                    radius: (WIDTH * ratio * breadth).min(reach),
                     inverse_half: 0.0,
                     inverse_radius2: 0.0,
                     present: true,

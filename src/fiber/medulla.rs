@@ -194,7 +194,8 @@ impl Medulla {
                         pitch_um: period / count,
                     });
                 }
-                let mut ladder = Ladder::new(self.ratio, period, count as usize, septum_um, seed);
+                let radii = (self.ratio, room.semi.y / section.b);
+                let mut ladder = Ladder::new(radii, period, count as usize, septum_um, seed);
                 if let Some(pieces) = &self.pieces {
                     ladder.keep(|z| pieces.holds(z));
                 }
