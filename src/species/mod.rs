@@ -10,7 +10,6 @@ mod error;
 mod fields;
 mod library;
 mod lookup;
-mod material_fields;
 mod materials;
 pub mod model;
 mod origin;

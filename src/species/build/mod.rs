@@ -3,6 +3,7 @@
 
 mod groom;
 mod materials;
+mod medulla;
 mod modeled;
 mod pigment;
 mod structure;

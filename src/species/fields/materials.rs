@@ -1,7 +1,7 @@
 //! The fields of `structure.materials`: what parts are made of where that is not keratin and air.
 
-use super::fields::number;
-use super::shape::{Choice, Field, Kind, Shape};
+use super::number;
+use crate::species::shape::{Choice, Field, Kind, Shape};
 
 /// Materials of all parts.
 pub(crate) static MATERIALS: Shape = Shape {

@@ -1,0 +1,87 @@
+//! The fields of how a hair class grows.
+
+use super::number;
+use crate::species::shape::{Field, Kind, Shape};
+
+pub(super) static GROOM: Shape = Shape {
+    name: "groom",
+    doc: "How one hair class grows on the skin.",
+    cited: true,
+    fields: &[
+        Field::required(
+            "density_per_cm2",
+            Kind::Number(number(0.1, 200_000.0, "per cm2")),
+            "Hairs of this class per square centimeter of skin.",
+        ),
+        Field::required(
+            "length_mm",
+            Kind::Number(number(0.5, 2000.0, "mm")),
+            "Mean length.",
+        ),
+        Field::required(
+            "length_sigma",
+            Kind::Number(number(0.0, 1.0, "")),
+            "Standard deviation of the logarithm of the length.",
+        ),
+        Field::required(
+            "diameter_um",
+            Kind::Number(number(1.0, 1000.0, "um")),
+            "Widest diameter along the hair.",
+        ),
+        Field::required(
+            "diameter_sigma",
+            Kind::Number(number(0.0, 1.0, "")),
+            "Standard deviation of the logarithm of the diameter.",
+        ),
+        Field::required(
+            "stalk",
+            Kind::Number(number(0.05, 1.0, "")),
+            "Diameter of the stalk over the widest diameter.",
+        ),
+        Field::required(
+            "shield",
+            Kind::Numbers(2, number(0.0, 1.0, "")),
+            "Where the stalk begins to widen and where it is widest, 0 root to 1 tip.",
+        ),
+        Field::required(
+            "taper_from",
+            Kind::Number(number(0.0, 0.99, "")),
+            "Where the tip begins to taper, 0 root to 1 tip; 0.99 is a cut end.",
+        ),
+        Field::required(
+            "emergence_deg",
+            Kind::Number(number(1.0, 90.0, "degrees")),
+            "Angle between skin and hair at the root, 90 upright.",
+        ),
+        Field::required(
+            "bend_deg",
+            Kind::Number(number(-360.0, 360.0, "degrees")),
+            "Bend along the hair under gravity and lay, root to tip.",
+        ),
+        Field::required(
+            "stray_deg",
+            Kind::Number(number(0.0, 90.0, "degrees")),
+            "Random deviation of direction.",
+        ),
+        Field::required(
+            "crimp_mm",
+            Kind::Number(number(0.0, 20.0, "mm")),
+            "Amplitude of the crimp, 0 straight.",
+        ),
+        Field::required(
+            "crimp_wavelength_mm",
+            Kind::Number(number(0.1, 1000.0, "mm")),
+            "Wavelength of the crimp.",
+        ),
+        Field::required(
+            "clump",
+            Kind::Number(number(0.0, 1.0, "")),
+            "Share of the way to the clump's center at the tip.",
+        ),
+        Field::required(
+            "clump_mm",
+            Kind::Number(number(0.01, 100.0, "mm")),
+            "Size of a clump.",
+        ),
+    ],
+};

@@ -1,0 +1,138 @@
+//! A validated species: plain data, every value finite and in range. Nothing after this module can
+//! meet a bad number. Lengths carry their unit in the name, angles are degrees as in the files.
+
+mod mesh;
+mod structure;
+
+pub use mesh::*;
+pub use structure::*;
+
+use serde::Serialize;
+
+/// One animal.
+#[derive(Clone, Debug, Serialize)]
+pub struct Species {
+    /// File name without extension, `red-fox`.
+    pub id: String,
+    /// Common name, `Red fox`.
+    pub name: String,
+    /// Scientific name, `Vulpes vulpes`; empty for made-up fibers.
+    pub latin: String,
+    /// Scientific family, `Canidae`; empty for made-up fibers.
+    pub family: String,
+    /// Family for people, `Dogs and foxes`; the library lists by it. Empty if the file names none.
+    pub group: String,
+    /// Other common names and former scientific ones; a built-in species is found by them.
+    pub synonyms: Vec<String>,
+    /// One or two sentences for people who browse the library.
+    pub summary: String,
+    /// Hair classes, the most visible (`guard`) first; never empty.
+    pub classes: Vec<HairClass>,
+    /// The skin under the fur, linear reflectance 0..1.
+    pub skin_color: [f64; 3],
+    /// The species file as read, with overrides listed at its end: provenance for tables and images.
+    #[serde(skip)]
+    pub text: String,
+}
+
+/// One kind of hair of an animal: `guard`, `under`.
+#[derive(Clone, Debug, Serialize)]
+pub struct HairClass {
+    /// Name of the class, unique in the species.
+    pub name: String,
+    /// Structures along the hair, ascending in `at`; never empty.
+    pub stations: Vec<Station>,
+    /// Pigment from the tip toward the root; never empty, the last band has `to_mm = infinity`.
+    pub pigment: Vec<PigmentBand>,
+    /// How this class grows on the skin.
+    pub groom: ClassGroom,
+}
+
+/// The micro-structure at one place along the hair.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Station {
+    /// Position along the hair, 0 root .. 1 tip. Between stations the renderer blends.
+    pub at: f64,
+    /// What the hair is made of there.
+    pub structure: Structure,
+}
+
+/// Pigment of a zone, counted from the tip because the tip grows first.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PigmentBand {
+    /// The zone ends this far from the tip, millimeters; infinity for the zone at the root.
+    pub to_mm: f64,
+    /// Width of the transition to the next zone, millimeters.
+    pub softness_mm: f64,
+    /// Eumelanin concentration, in the units of hair shaders for a fiber of 40 um radius.
+    pub eumelanin: f64,
+    /// Pheomelanin concentration, same units.
+    pub pheomelanin: f64,
+}
+
+/// Radius for which melanin concentrations are stated, micrometers: a human hair.
+pub const REFERENCE_RADIUS_UM: f64 = 40.0;
+
+/// Absorption of unit eumelanin per reference radius, linear Rec.709 (pbrt after d'Eon 2011).
+pub const EUMELANIN: [f64; 3] = [0.419, 0.697, 1.37];
+
+/// Absorption of unit pheomelanin per reference radius, linear Rec.709 (pbrt after d'Eon 2011).
+pub const PHEOMELANIN: [f64; 3] = [0.187, 0.4, 1.05];
+
+impl PigmentBand {
+    /// Absorption coefficient per micrometer for linear R, G, B. Physical: it does not depend on
+    /// the diameter, so fine underhair is paler than guard hair of the same pigment.
+    pub fn absorption_per_um(&self) -> [f64; 3] {
+        std::array::from_fn(|c| {
+            (self.eumelanin * EUMELANIN[c] + self.pheomelanin * PHEOMELANIN[c])
+                / REFERENCE_RADIUS_UM
+        })
+    }
+}
+
+impl HairClass {
+    /// The pigment at a position along the hair, for hairs of mean length.
+    ///
+    /// * `at`: 0 root .. 1 tip.
+    pub fn band_at(&self, at: f64) -> &PigmentBand {
+        let from_tip_mm = (1.0 - at) * self.groom.length_mm;
+        let band = self.pigment.iter().find(|band| from_tip_mm <= band.to_mm);
+        // The last band has no end; a class has at least one.
+        band.unwrap_or(&self.pigment[self.pigment.len() - 1])
+    }
+}
+
+/// How one hair class grows.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ClassGroom {
+    /// Follicles per square centimeter of skin.
+    pub density_per_cm2: f64,
+    /// Mean length, millimeters.
+    pub length_mm: f64,
+    /// Standard deviation of the logarithm of the length.
+    pub length_sigma: f64,
+    /// Widest diameter along the hair, micrometers.
+    pub diameter_um: f64,
+    /// Standard deviation of the logarithm of the diameter.
+    pub diameter_sigma: f64,
+    /// Diameter of the stalk over the widest diameter, 0..1.
+    pub stalk: f64,
+    /// Where the stalk begins to widen and where it is widest, 0..1 along the hair.
+    pub shield: [f64; 2],
+    /// Where the tip begins to taper, 0..1.
+    pub taper_from: f64,
+    /// Angle between skin and hair at the root, degrees, 0 flat .. 90 upright.
+    pub emergence_deg: f64,
+    /// Bend along the hair under gravity and lay, degrees root to tip.
+    pub bend_deg: f64,
+    /// Random deviation of direction, degrees.
+    pub stray_deg: f64,
+    /// Amplitude of the crimp, millimeters, 0 straight.
+    pub crimp_mm: f64,
+    /// Wavelength of the crimp, millimeters.
+    pub crimp_wavelength_mm: f64,
+    /// Share of the way to the clump's center at the tip, 0..1.
+    pub clump: f64,
+    /// Size of a clump, millimeters.
+    pub clump_mm: f64,
+}
