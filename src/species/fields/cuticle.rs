@@ -14,7 +14,7 @@ pub(super) const SCALES: &[&str] = &[
     "lifted",
 ];
 
-/// Scale patterns: `smooth`, then those of [`super::PATTERN_LIBRARY`].
+/// Scale patterns: `smooth`, then those of [`crate::species::PATTERN_LIBRARY`].
 pub(crate) const PATTERNS: &[Choice] = &[
     Choice {
         name: "smooth",
@@ -108,7 +108,7 @@ pub(crate) const PATTERNS: &[Choice] = &[
     },
 ];
 
-/// Margin modifiers, in the order of [`super::Margin`].
+/// Margin modifiers, in the order of [`crate::species::Margin`].
 const MARGINS: &[Choice] = &[
     Choice {
         name: "smooth",

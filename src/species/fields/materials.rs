@@ -38,7 +38,7 @@ pub(crate) static MATERIALS: Shape = Shape {
     ],
 };
 
-/// What a boundary may be, in the order of [`super::Boundary`].
+/// What a boundary may be, in the order of [`crate::species::Boundary`].
 pub(crate) const BOUNDARIES: &[Choice] = &[
     Choice {
         name: "dielectric",

@@ -3,7 +3,7 @@
 use super::number;
 use crate::species::shape::{Choice, Field, Kind, Shape};
 
-/// Medulla types, in the order of [`super::MedullaKind`].
+/// Medulla types, in the order of [`crate::species::MedullaKind`].
 pub(crate) const MEDULLAE: &[Choice] = &[
     Choice {
         name: "none",
@@ -62,7 +62,7 @@ pub(crate) const MEDULLAE: &[Choice] = &[
     },
 ];
 
-/// Whether a medulla runs through, in the order of [`super::Continuity`].
+/// Whether a medulla runs through, in the order of [`crate::species::Continuity`].
 const CONTINUITIES: &[Choice] = &[
     Choice {
         name: "continuous",

@@ -3,7 +3,7 @@
 use super::number;
 use crate::species::shape::{Choice, Field, Kind, Shape};
 
-/// What a part of a mesh bounds, in the order of [`super::MeshRole`].
+/// What a part of a mesh bounds, in the order of [`crate::species::MeshRole`].
 const MESH_ROLES: &[Choice] = &[
     Choice {
         name: "cuticle",
@@ -37,7 +37,7 @@ const MESH_ROLES: &[Choice] = &[
     },
 ];
 
-/// Which axis of a mesh points to the tip, in the order of [`super::MeshAxis`].
+/// Which axis of a mesh points to the tip, in the order of [`crate::species::MeshAxis`].
 const MESH_AXES: &[Choice] = &[
     Choice {
         name: "x",
@@ -56,7 +56,7 @@ const MESH_AXES: &[Choice] = &[
     },
 ];
 
-/// What becomes of the two ends of a mesh, in the order of [`super::MeshEnds`].
+/// What becomes of the two ends of a mesh, in the order of [`crate::species::MeshEnds`].
 const MESH_ENDS: &[Choice] = &[
     Choice {
         name: "open",

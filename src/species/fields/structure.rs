@@ -70,7 +70,7 @@ pub(super) const MESH_FIELD: Field = Field::optional(
     "A fiber modeled elsewhere, in place of section, scales and voids; materials are read as ever.",
 );
 
-/// Sections, in the order of [`super::Section`].
+/// Sections, in the order of [`crate::species::Section`].
 const SECTIONS: &[Choice] = &[
     Choice {
         name: "ellipse",
