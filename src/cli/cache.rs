@@ -1,5 +1,6 @@
 //! `vair cache`: where baked tables are kept, how much there is, and away with it.
 
+use super::stdout::print;
 use super::{Console, Failure};
 use crate::bake::Cache;
 use crate::blame::Blame;
@@ -27,12 +28,11 @@ pub(super) fn run(args: &Args, _console: &Console) -> Result<(), Failure> {
         Action::Clear => ("is now rid of", cache.clear()),
     };
     let megabytes = size.bytes as f64 / 1e6;
-    println!(
-        "{} {what} {} tables, {megabytes:.1} MB",
+    print(&format!(
+        "{} {what} {} tables, {megabytes:.1} MB\n",
         cache.folder().display(),
         size.tables
-    );
-    Ok(())
+    ))
 }
 
 fn no_cache() -> Failure {

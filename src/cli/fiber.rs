@@ -3,6 +3,7 @@
 mod mesh;
 
 use super::bake::{find_class, find_station};
+use super::stdout::print_json;
 use super::{Console, Failure};
 use crate::blame::Blame;
 use crate::fiber::{Fiber, FiberError};
@@ -10,7 +11,6 @@ use crate::io::{AtomicFile, check_writable};
 use crate::micrograph::{self, Legend, MicrographError, Microscope, Shot, Subject, View, tilt_deg};
 use crate::species::{self, HairClass, Species, Station};
 use serde_json::json;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `vair fiber`.
@@ -193,13 +193,7 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         }
     }
     if args.json {
-        let text = format!("{:#}\n", summary(&species, class, station, &fiber));
-        if let Err(error) = std::io::stdout().lock().write_all(text.as_bytes())
-            && error.kind() != std::io::ErrorKind::BrokenPipe
-        {
-            let message = format!("cannot write to stdout: {error}");
-            return Err(Failure::new(Blame::Environment, message));
-        }
+        print_json(&summary(&species, class, station, &fiber))?;
     }
     Ok(())
 }

@@ -14,6 +14,7 @@ mod render;
 mod schema;
 mod signals;
 mod species;
+mod stdout;
 mod table;
 
 pub use console::Console;

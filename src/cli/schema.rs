@@ -1,9 +1,8 @@
 //! `vair schema`: the JSON Schema of a file format, for editors.
 
+use super::stdout::print_json;
 use super::{Console, Failure};
-use crate::blame::Blame;
 use crate::species;
-use std::io::Write as _;
 
 /// Prints the JSON Schema of a file format.
 #[derive(Debug, clap::Args)]
@@ -33,6 +32,5 @@ pub(super) fn run(args: &Args, _console: &Console) -> Result<(), Failure> {
         Format::Species => species::json_schema(),
         Format::Pattern => species::pattern_schema(),
     };
-    writeln!(std::io::stdout().lock(), "{schema:#}")
-        .map_err(|e| Failure::new(Blame::Environment, format!("cannot write to stdout: {e}")))
+    print_json(&schema)
 }

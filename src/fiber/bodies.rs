@@ -7,7 +7,7 @@
 
 use super::convex::{Convex, Plane, Quadric, holds};
 use super::grid::Grid;
-use super::section::nearest_period;
+use super::section::nearest_image;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -119,8 +119,7 @@ impl Bodies {
     /// Center of the image of a body that is nearest in z.
     #[inline]
     fn center_near(&self, body: &Body, z: f64) -> DVec3 {
-        let c = body.center;
-        DVec3::new(c.x, c.y, c.z + nearest_period(z - c.z, self.period))
+        nearest_image(body.center, z, self.period)
     }
 
     /// First void that a ray in keratin enters in `t0..t1`, by the face, or the face of the island that

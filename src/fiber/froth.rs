@@ -2,7 +2,7 @@
 
 use super::grid::Grid;
 use super::packing;
-use super::section::nearest_period;
+use super::section::nearest_image;
 use glam::DVec3;
 
 /// A spherical void, micrometers.
@@ -45,8 +45,7 @@ impl Froth {
 
     /// Center of the image of a sphere that is nearest in z.
     pub(super) fn center_near(&self, index: u32, z: f64) -> DVec3 {
-        let c = self.spheres[index as usize].center;
-        DVec3::new(c.x, c.y, c.z + nearest_period(z - c.z, self.period))
+        nearest_image(self.spheres[index as usize].center, z, self.period)
     }
 
     /// First sphere that the ray enters in `t0..t1`: time and index.

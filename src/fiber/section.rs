@@ -262,3 +262,9 @@ pub(super) fn floor(x: f64) -> f64 {
 pub(super) fn nearest_period(z: f64, period: f64) -> f64 {
     period * floor(z / period + 0.5)
 }
+
+/// The periodic image of a point that is nearest to `z`.
+#[inline]
+pub(super) fn nearest_image(point: DVec3, z: f64, period: f64) -> DVec3 {
+    point.with_z(point.z + nearest_period(z - point.z, period))
+}

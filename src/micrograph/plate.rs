@@ -20,6 +20,25 @@ struct Panel {
     height: usize,
 }
 
+/// From one row of facts to the next, pixels.
+fn row_height(text: f32) -> usize {
+    (GLYPH_HEIGHT * text * 1.5) as usize
+}
+
+/// Facts broken into rows, in the largest text that fits; the smallest text may be cut.
+fn largest_fit(facts: &[String], text: f32, (width, height): (usize, usize)) -> (f32, Vec<String>) {
+    let rows = |text: f32| -> Vec<String> {
+        let columns = (width as f32 / text_width("m", text)) as usize;
+        facts.iter().flat_map(|fact| wrap(fact, columns)).collect()
+    };
+    let mut text = text;
+    // Glyphs are bitmaps: other than whole sizes blur.
+    while text > 1.0 && rows(text).len() * row_height(text) > height {
+        text -= 1.0;
+    }
+    (text, rows(text))
+}
+
 /// Draws the plate; `None` when canceled.
 pub(super) fn draw(
     subject: &Subject,
@@ -83,12 +102,15 @@ pub(super) fn draw(
     mount(&outside, long, "outside, root left, tip right", 0);
     mount(&inside, cut, "front half cut away", 0);
     mount(&section, across, "cross-section", 1);
-    let columns = (side as f32 / text_width("m", text)) as usize;
     let mut y = across.y + across.height + 3 * line;
-    let rows = [facts.size, facts.cuticle, facts.medulla];
-    for row in rows.iter().flat_map(|fact| wrap(fact, columns)) {
+    let (text, rows) = largest_fit(
+        &[facts.size, facts.cuticle, facts.medulla],
+        text,
+        (side, height.saturating_sub(y)),
+    );
+    for row in rows {
         canvas.text(at(across.x, y), &row, text, INK);
-        y += (GLYPH_HEIGHT * text * 1.5) as usize;
+        y += row_height(text);
     }
     Some(canvas)
 }

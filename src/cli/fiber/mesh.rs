@@ -60,6 +60,8 @@ pub(super) fn write_ply(path: &Path, parts: &[MeshPart]) -> Result<(), FileError
 
 /// What to write into a species file to bake a mesh of ours.
 pub(super) fn how_to_use(path: &Path, period_um: f64) -> String {
+    // To a millionth of a micrometer: the ends are matched less closely than that.
+    let period_um = (period_um * 1e6).round() / 1e6;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     format!(
         "to bake it, with a species file beside it or --set:\n[structure.mesh]\nfile = {name:?}\n\

@@ -9,12 +9,11 @@ mod show;
 
 pub(super) use show::page as field_guide;
 
+use super::stdout::{print, print_json};
 use super::{Console, Failure};
-use crate::blame::Blame;
 use crate::species::{Origins, Species};
 use clap::Subcommand;
 use serde_json::json;
-use std::io::Write as _;
 
 /// Options of `vair species`.
 #[derive(Debug, clap::Args)]
@@ -77,19 +76,4 @@ fn summary(species: &Species, origins: &Origins) -> serde_json::Value {
 /// `10 of 80`: the numbers that come from literature.
 fn sourced(origins: &Origins) -> String {
     format!("{} of {}", origins.sourced(), origins.numbers.len())
-}
-
-fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
-    print(&format!("{value:#}\n"))
-}
-
-/// Writes to stdout; a reader that has gone away (`| head`) is no failure.
-fn print(text: &str) -> Result<(), Failure> {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::new(
-            Blame::Environment,
-            format!("cannot write to stdout: {e}"),
-        )),
-        _ => Ok(()),
-    }
 }

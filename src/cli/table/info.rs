@@ -1,6 +1,7 @@
 //! `vair table info`: a table file in words and numbers.
 
 use crate::cli::Failure;
+use crate::cli::stdout::{print, print_json};
 use crate::table::{FORMAT, Ledger, Mode, Nodes, PHOTON, Provenance, TableFile};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -24,11 +25,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         let mut json = summary.json();
         json["file"] = json!(args.file.to_string_lossy());
-        println!("{json:#}");
+        print_json(&json)
     } else {
-        print!("{}", summary.text());
+        print(&summary.text())
     }
-    Ok(())
 }
 
 /// What both kinds of tables have to say.

@@ -127,25 +127,33 @@ pub(super) static CORTEX: Shape = Shape {
     ],
 };
 
+/// The fields of a structure, after those given: a station has all of them.
+macro_rules! structure_fields {
+    ($($first:expr)?) => {
+        &[
+            $($first,)?
+            DIAMETER,
+            ASPECT,
+            SECTION,
+            SQUARENESS,
+            BEND,
+            DENT,
+            TWIST,
+            IOR,
+            CUTICLE_FIELD,
+            CORTEX_FIELD,
+            MEDULLA_FIELD,
+            MATERIALS_FIELD,
+            MESH_FIELD,
+        ]
+    };
+}
+
 pub(super) static STRUCTURE: Shape = Shape {
     name: "structure",
     doc: "Cross-section, surface and interior of a fiber, as far as it is shared.",
     cited: true,
-    fields: &[
-        DIAMETER,
-        ASPECT,
-        SECTION,
-        SQUARENESS,
-        BEND,
-        DENT,
-        TWIST,
-        IOR,
-        CUTICLE_FIELD,
-        CORTEX_FIELD,
-        MEDULLA_FIELD,
-        MATERIALS_FIELD,
-        MESH_FIELD,
-    ],
+    fields: structure_fields!(),
 };
 
 pub(super) static STATION: Shape = Shape {
@@ -153,24 +161,9 @@ pub(super) static STATION: Shape = Shape {
     doc: "The micro-structure at one place along the hair. What is left out here comes from the \
           `structure` of the class, then from the `structure` of the species.",
     cited: true,
-    fields: &[
-        Field::required(
-            "at",
-            Kind::Number(number(0.0, 1.0, "")),
-            "Position along the hair, 0 root to 1 tip.",
-        ),
-        DIAMETER,
-        ASPECT,
-        SECTION,
-        SQUARENESS,
-        BEND,
-        DENT,
-        TWIST,
-        IOR,
-        CUTICLE_FIELD,
-        CORTEX_FIELD,
-        MEDULLA_FIELD,
-        MATERIALS_FIELD,
-        MESH_FIELD,
-    ],
+    fields: structure_fields!(Field::required(
+        "at",
+        Kind::Number(number(0.0, 1.0, "")),
+        "Position along the hair, 0 root to 1 tip.",
+    )),
 };
