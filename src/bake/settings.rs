@@ -1,0 +1,134 @@
+//! What a bake is asked for, its limits and its errors.
+
+use super::{PASSES, tally};
+use crate::blame::Blame;
+use crate::fiber::FiberError;
+use crate::table::Mode;
+
+/// How to bake.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Settings {
+    /// Paper or cone mode.
+    pub mode: Mode,
+    /// Inclination nodes, 2..=256.
+    pub bins: usize,
+    /// Texels along a face edge: a power of two, 4..=512.
+    pub face: usize,
+    /// Photons over all nodes.
+    pub photons: u64,
+    /// Reflections, refractions and scatterings after which a photon is given up. The paper's 16
+    /// loses up to half the light of pale fibers; at 1000 a closed clear fiber loses nothing.
+    pub max_events: u32,
+    /// Seed of photons and geometry.
+    pub seed: u64,
+    /// Optical depths per mean radius, ascending, the first 0, then a geometric series of ratio 2.
+    pub levels: Vec<f64>,
+    /// Average each map with its mirror image where the fiber allows it: half the variance.
+    pub fold: bool,
+}
+
+impl Settings {
+    /// The paper to the letter: 16 bins, 6 x 64 x 64, a billion photons, 16 events.
+    pub fn paper() -> Self {
+        Self {
+            mode: Mode::Paper,
+            max_events: 16,
+            fold: false,
+            ..Self::cone()
+        }
+    }
+
+    /// The default: the same storage and count in the cone frame, no light cut off.
+    pub fn cone() -> Self {
+        Self {
+            mode: Mode::Cone,
+            bins: 16,
+            face: 64,
+            photons: 1_000_000_000,
+            max_events: 1000,
+            seed: 0,
+            levels: absorption_levels(12),
+            fold: true,
+        }
+    }
+}
+
+/// Level 0 is clear; level k is an optical depth of `0.0125 * 2^(k-1)` per radius. Twelve levels end
+/// at 12.8, blacker than black hair (8 x 1.37 = 11); the ratio of 2 makes a level the square of the
+/// one before it, so that a photon needs one exponential.
+pub fn absorption_levels(count: usize) -> Vec<f64> {
+    std::iter::once(0.0)
+        .chain((0..).map(|k| 0.0125 * f64::from(1u32 << k)))
+        .take(count.clamp(1, tally::MAX_LEVELS))
+        .collect()
+}
+
+/// A bake that cannot be done or was stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum BakeError {
+    /// A setting is out of range.
+    #[error("{name} is {found}, must be {expected}")]
+    Setting {
+        /// Which setting.
+        name: &'static str,
+        /// Its value.
+        found: String,
+        /// The allowed range.
+        expected: &'static str,
+    },
+    /// The fiber cannot be built.
+    #[error(transparent)]
+    Fiber(#[from] FiberError),
+    /// Stopped before every direction had been covered once.
+    #[error("stopped before the first pass over all directions was complete; nothing was kept")]
+    Stopped,
+}
+
+impl BakeError {
+    /// Who has to act.
+    pub fn blame(&self) -> Blame {
+        match self {
+            Self::Setting { .. } => Blame::Input,
+            Self::Fiber(_) => Blame::Input,
+            Self::Stopped => Blame::Interrupted,
+        }
+    }
+}
+
+/// Refuses settings out of range.
+pub(super) fn check(settings: &Settings) -> Result<(), BakeError> {
+    let refuse = |name, found: String, expected| {
+        Err(BakeError::Setting {
+            name,
+            found,
+            expected,
+        })
+    };
+    if !(2..=256).contains(&settings.bins) {
+        return refuse("bins", settings.bins.to_string(), "2 to 256");
+    }
+    if !settings.face.is_power_of_two() || !(4..=512).contains(&settings.face) {
+        return refuse(
+            "face",
+            settings.face.to_string(),
+            "a power of two from 4 to 512",
+        );
+    }
+    // Above 2^32 photons the fixed-point sums of one texel could overflow.
+    let least = settings.bins as u64 * PASSES;
+    if !(least..1 << 32).contains(&settings.photons) {
+        return refuse(
+            "photons",
+            settings.photons.to_string(),
+            "8 a bin to 4294967295",
+        );
+    }
+    if !(1..=1_000_000).contains(&settings.max_events) {
+        return refuse(
+            "max-events",
+            settings.max_events.to_string(),
+            "1 to 1000000",
+        );
+    }
+    Ok(())
+}
