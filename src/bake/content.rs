@@ -5,7 +5,7 @@ use crate::species::Structure;
 use sha2::{Digest, Sha256};
 
 /// Raised whenever geometry, photon walk or tally change what comes out between two versions.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
 /// SHA-256, in hexadecimal, of structure, settings, format and program version.
 pub fn content_hash(structure: &Structure, settings: &Settings) -> String {

@@ -1,8 +1,12 @@
 //! Where photons start: evenly over inclination, width, length and rotation of the fiber.
 
+use super::fork::fork;
+use super::microfacet::{Ratio, Turn};
+use super::photon::follow_from;
 use super::{End, Flight, follow};
-use crate::fiber::{Fiber, Region};
+use crate::fiber::{Fiber, Hit, Optics, Region};
 use crate::sampling::Rng;
+use crate::table::PHOTON;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -27,46 +31,118 @@ const ENTRY_TRIES: u32 = 64;
 /// * `max_events`: given up inside after this many events.
 pub fn fly(fiber: &Fiber, photon: &Photon, max_events: u32) -> Flight {
     let mut rng = Rng::new(photon.seed, photon.stream);
-    let (along, across) = stratified(photon);
-    let (lo, hi) = photon.sin_range;
-    let sin = lo + (hi - lo) * along;
-    let cos = (1.0 - sin * sin).max(0.0).sqrt();
-    let flight = Flight {
-        theta: sin.atan2(cos),
-        path_um: 0.0,
-        share: 1.0,
-        events: 0,
-        end: End::Missed,
+    let entry = Entry::find(fiber, photon, &mut rng);
+    let Some((p, hit)) = entry.met else {
+        return entry.missed();
     };
+    entry.seen(follow(fiber, p, entry.dir, hit, &mut rng, max_events))
+}
 
-    let turn = DVec2::from_angle(TAU * rng.uniform());
-    let dir = rotate(DVec3::new(-cos, 0.0, -sin), turn);
-    let radius = fiber.bounding_radius_um();
-    let mut h = 2.0 * across - 1.0;
-    let mut entry = None;
-    for _ in 0..ENTRY_TRIES {
-        // On the side of the bounding cylinder that the beam comes from, a little outside it.
-        let x = (1.0 - h * h).max(0.0).sqrt() + 1e-3;
-        let z = fiber.period_um() * rng.uniform();
-        let origin = rotate(DVec3::new(radius * x, radius * h, z), turn);
-        if let Some(hit) = fiber.next_hit(origin, dir, Region::Outside, None) {
-            entry = Some((origin + hit.t * dir, hit));
-            break;
-        }
-        h = 2.0 * rng.uniform() - 1.0;
-    }
-    let Some((p, hit)) = entry else {
-        return flight;
+/// Flies a photon as [`fly`] does, but where it first meets the fiber follows both what is reflected
+/// and what goes in, if that boundary is a dielectric one. The same light in the mean.
+///
+/// * `book`: gets every branch and its part of the photon in units of 2^-32; the parts sum to one
+///   photon exactly.
+pub fn fly_forked(
+    fiber: &Fiber,
+    photon: &Photon,
+    max_events: u32,
+    mut book: impl FnMut(u64, Flight),
+) {
+    let mut rng = Rng::new(photon.seed, photon.stream);
+    let entry = Entry::find(fiber, photon, &mut rng);
+    let Some((p, hit)) = entry.met else {
+        return book(PHOTON, entry.missed());
     };
-    let way = follow(fiber, p, dir, hit, &mut rng, max_events);
-    let back = DVec2::new(turn.x, -turn.y);
-    Flight {
-        theta: flight.theta,
-        end: match way.end {
-            End::Escaped(dir) => End::Escaped(rotate(dir, back)),
-            other => other,
-        },
-        ..way
+    let ratio = Ratio {
+        eta: fiber.eta(Region::Outside, hit.to),
+        inverse: fiber.eta(hit.to, Region::Outside),
+    };
+    let forked = match fiber.optics(hit.part) {
+        Optics::Dielectric { roughness } if ratio.eta != 1.0 => {
+            fork(entry.dir, hit.normal, ratio, *roughness, &mut rng)
+        }
+        _ => None,
+    };
+    let mut branch = |part: u64, turn: Option<Turn>| {
+        if part > 0 {
+            let way = follow_from(fiber, p, entry.dir, hit, turn, &mut rng, max_events);
+            book(part, entry.seen(way));
+        }
+    };
+    match forked {
+        Some(fork) => {
+            let part = ((fork.reflectance * PHOTON as f64) as u64).min(PHOTON);
+            branch(part, Some(fork.reflected));
+            branch(PHOTON - part, Some(fork.transmitted));
+        }
+        None => branch(PHOTON, None),
+    }
+}
+
+/// Where a photon meets the fiber.
+struct Entry {
+    /// Inclination of the query direction, radians.
+    theta: f64,
+    /// Direction of travel.
+    dir: DVec3,
+    /// Cosine and sine of the fiber's rotation.
+    turn: DVec2,
+    /// Place and boundary, unless it missed.
+    met: Option<(DVec3, Hit)>,
+}
+
+impl Entry {
+    fn find(fiber: &Fiber, photon: &Photon, rng: &mut Rng) -> Self {
+        let (along, across) = stratified(photon);
+        let (lo, hi) = photon.sin_range;
+        let sin = lo + (hi - lo) * along;
+        let cos = (1.0 - sin * sin).max(0.0).sqrt();
+        let turn = DVec2::from_angle(TAU * rng.uniform());
+        let dir = rotate(DVec3::new(-cos, 0.0, -sin), turn);
+        let radius = fiber.bounding_radius_um();
+        let mut h = 2.0 * across - 1.0;
+        let mut met = None;
+        for _ in 0..ENTRY_TRIES {
+            // On the side of the bounding cylinder that the beam comes from, a little outside it.
+            let x = (1.0 - h * h).max(0.0).sqrt() + 1e-3;
+            let z = fiber.period_um() * rng.uniform();
+            let origin = rotate(DVec3::new(radius * x, radius * h, z), turn);
+            if let Some(hit) = fiber.next_hit(origin, dir, Region::Outside, None) {
+                met = Some((origin + hit.t * dir, hit));
+                break;
+            }
+            h = 2.0 * rng.uniform() - 1.0;
+        }
+        Self {
+            theta: sin.atan2(cos),
+            dir,
+            turn,
+            met,
+        }
+    }
+
+    fn missed(&self) -> Flight {
+        Flight {
+            theta: self.theta,
+            path_um: 0.0,
+            share: 1.0,
+            events: 0,
+            end: End::Missed,
+        }
+    }
+
+    /// A flight through the turned fiber as the query direction sees it.
+    fn seen(&self, way: Flight) -> Flight {
+        let back = DVec2::new(self.turn.x, -self.turn.y);
+        Flight {
+            theta: self.theta,
+            end: match way.end {
+                End::Escaped(dir) => End::Escaped(rotate(dir, back)),
+                other => other,
+            },
+            ..way
+        }
     }
 }
 

@@ -10,6 +10,7 @@ mod cache;
 mod content;
 mod entry;
 mod find;
+mod fork;
 mod microfacet;
 mod photon;
 mod settings;
@@ -18,7 +19,7 @@ mod tally;
 
 pub use cache::{Cache, CacheSize};
 pub use content::content_hash;
-pub use entry::{Photon, fly};
+pub use entry::{Photon, fly, fly_forked};
 pub use find::find_or_bake;
 pub use photon::{End, Flight, follow};
 pub use settings::{BakeError, Settings, absorption_levels};

@@ -1,6 +1,7 @@
 //! One photon through one fiber: a function of (fiber, photon) and nothing else.
 
-use super::{boundary, microfacet};
+use super::boundary;
+use super::microfacet::{self, Turn};
 use crate::fiber::{Fiber, Hit, Medium, Optics, Region};
 use crate::sampling::Rng;
 use glam::DVec3;
@@ -44,9 +45,23 @@ pub struct Flight {
 #[inline]
 pub fn follow(
     fiber: &Fiber,
+    p: DVec3,
+    dir: DVec3,
+    hit: Hit,
+    rng: &mut Rng,
+    max_events: u32,
+) -> Flight {
+    follow_from(fiber, p, dir, hit, None, rng, max_events)
+}
+
+/// [`follow`] with the decision at the first boundary already taken if `first` says so.
+#[inline]
+pub(super) fn follow_from(
+    fiber: &Fiber,
     mut p: DVec3,
     mut dir: DVec3,
     mut hit: Hit,
+    mut first: Option<Turn>,
     rng: &mut Rng,
     max_events: u32,
 ) -> Flight {
@@ -72,6 +87,7 @@ pub fn follow(
         } else {
             flight.events += 1;
             let turned = match optics {
+                _ if first.is_some() => first.take(),
                 Optics::Dielectric { roughness } if *roughness > 0.0 => {
                     microfacet::rough(dir, hit.normal, ratio, *roughness, rng)
                 }

@@ -25,6 +25,8 @@ pub struct Settings {
     pub levels: Vec<f64>,
     /// Average each map with its mirror image where the fiber allows it: half the variance.
     pub fold: bool,
+    /// Follow both what the surface reflects and what goes in, where light first meets the fiber.
+    pub fork: bool,
 }
 
 impl Settings {
@@ -34,6 +36,7 @@ impl Settings {
             mode: Mode::Paper,
             max_events: 16,
             fold: false,
+            fork: false,
             ..Self::cone()
         }
     }
@@ -49,6 +52,7 @@ impl Settings {
             seed: 0,
             levels: absorption_levels(12),
             fold: true,
+            fork: true,
         }
     }
 }

@@ -1,11 +1,11 @@
 //! The photons of one node, flown and tallied.
 
-use super::tally::Tally;
-use super::{End, Photon, Settings, fly};
+use super::tally::{Rest, Tally};
+use super::{End, Flight, Photon, Settings, fly, fly_forked};
 use crate::fiber::Fiber;
 use crate::math::unicube::Unicube;
 use crate::progress::{Cancel, Progress};
-use crate::table::{Mode, Nodes};
+use crate::table::{Mode, Nodes, PHOTON};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -67,9 +67,26 @@ impl Shot<'_> {
             stream: ((self.node as u64) << 40) | index,
             sin_range: (edges[self.node].sin(), edges[self.node + 1].sin()),
         };
-        let flight = fly(self.fiber, &photon, self.settings.max_events);
-        let path = flight.path_um / (0.5 * self.fiber.structure().diameter_um);
-        let (share, levels) = (flight.share, &self.settings.levels);
+        tally.emit();
+        let max_events = self.settings.max_events;
+        if self.settings.fork {
+            fly_forked(self.fiber, &photon, max_events, |part, flight| {
+                self.book(part, &flight, tally);
+            });
+        } else {
+            let flight = fly(self.fiber, &photon, max_events);
+            self.book(PHOTON, &flight, tally);
+        }
+    }
+
+    /// Books where a part of a photon went.
+    fn book(&self, part: u64, flight: &Flight, tally: &mut Tally) {
+        let levels = &self.settings.levels;
+        let rest = Rest {
+            part,
+            share: flight.share,
+            path: flight.path_um / (0.5 * self.fiber.structure().diameter_um),
+        };
         match flight.end {
             End::Escaped(w) => {
                 let w = match self.settings.mode {
@@ -79,12 +96,12 @@ impl Shot<'_> {
                         crate::math::frame::shift_inclination(w, sin, cos)
                     }
                 };
-                tally.escape(self.cube.texel(w), share, path, levels);
+                tally.escape(self.cube.texel(w), rest, levels);
             }
-            End::Absorbed => tally.absorb(levels),
-            End::Truncated => tally.truncate(share, path, levels),
-            End::Lost => tally.lose(share, path, levels),
-            End::Missed => {}
+            End::Absorbed => tally.absorb(rest, levels),
+            End::Truncated => tally.truncate(rest, levels),
+            End::Lost => tally.lose(rest, levels),
+            End::Missed => tally.miss(),
         }
     }
 }

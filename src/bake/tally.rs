@@ -6,6 +6,17 @@ use crate::table::{Ledger, PHOTON};
 /// Most absorption levels a tally holds.
 pub(super) const MAX_LEVELS: usize = 24;
 
+/// A part of a photon at the end of its way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rest {
+    /// How much of a photon set out, in units of 2^-32; at most one photon.
+    pub(super) part: u64,
+    /// What is left of it, pigment aside.
+    pub(super) share: f64,
+    /// Its way through pigment in radii.
+    pub(super) path: f64,
+}
+
 /// Where the photons of one node went, per absorption level, in units of 2^-32 photon.
 ///
 /// What was absorbed is summed photon by photon and what escaped is the sum of the texels: that
@@ -15,6 +26,9 @@ pub(super) struct Tally {
     levels: usize,
     /// `texels[texel * levels + level]`: a photon touches one contiguous run.
     texels: Vec<u64>,
+    /// Per texel, the sum of the squares of what left there at the clear level: its variance, as
+    /// photons are independent.
+    squares: Vec<u64>,
     photons: u64,
     absorbed: [u64; MAX_LEVELS],
     truncated: [u64; MAX_LEVELS],
@@ -25,10 +39,10 @@ impl Tally {
     pub(super) fn new(texels: usize, levels: usize) -> Self {
         debug_assert!((1..=MAX_LEVELS).contains(&levels));
         let zero = [0; MAX_LEVELS];
-        let texels = vec![0; texels * levels];
         Self {
             levels,
-            texels,
+            squares: vec![0; texels],
+            texels: vec![0; texels * levels],
             photons: 0,
             absorbed: zero,
             truncated: zero,
@@ -40,46 +54,57 @@ impl Tally {
         self.photons == 0
     }
 
-    /// A photon left through `texel`.
-    ///
-    /// * `share`: what is left of it, pigment aside; `path`: its way through pigment in radii.
-    pub(super) fn escape(&mut self, texel: usize, share: f64, path: f64, levels: &[f64]) {
-        let weights = self.arrive(share, path, levels);
+    /// A photon was sent out. Its parts follow.
+    pub(super) fn emit(&mut self) {
+        self.photons += 1;
+    }
+
+    /// A photon never met the fiber: it does not count.
+    pub(super) fn miss(&mut self) {
+        self.photons -= 1;
+    }
+
+    /// Part of a photon left through `texel`.
+    pub(super) fn escape(&mut self, texel: usize, rest: Rest, levels: &[f64]) {
+        let weights = self.arrive(rest, levels);
         let run = &mut self.texels[texel * self.levels..(texel + 1) * self.levels];
         for (sum, weight) in run.iter_mut().zip(weights) {
             *sum += weight;
         }
+        self.squares[texel] += square(weights[0]);
     }
 
-    /// A photon was given up.
-    pub(super) fn truncate(&mut self, share: f64, path: f64, levels: &[f64]) {
-        let weights = self.arrive(share, path, levels);
+    /// Part of a photon was given up.
+    pub(super) fn truncate(&mut self, rest: Rest, levels: &[f64]) {
+        let weights = self.arrive(rest, levels);
         add(&mut self.truncated, &weights);
     }
 
-    /// A photon found no boundary.
-    pub(super) fn lose(&mut self, share: f64, path: f64, levels: &[f64]) {
-        let weights = self.arrive(share, path, levels);
+    /// Part of a photon found no boundary.
+    pub(super) fn lose(&mut self, rest: Rest, levels: &[f64]) {
+        let weights = self.arrive(rest, levels);
         add(&mut self.lost, &weights);
     }
 
-    /// Nothing was left of a photon.
-    pub(super) fn absorb(&mut self, levels: &[f64]) {
-        self.arrive(0.0, 0.0, levels);
+    /// Nothing was left of a part of a photon.
+    pub(super) fn absorb(&mut self, rest: Rest, levels: &[f64]) {
+        self.arrive(Rest { share: 0.0, ..rest }, levels);
     }
 
-    /// Books a photon and what was taken of it on its way; returns what is left at each level.
-    fn arrive(&mut self, share: f64, path: f64, levels: &[f64]) -> [u64; MAX_LEVELS] {
-        self.photons += 1;
-        let weights = weights(share, path, levels);
+    /// Books what was taken of a part on its way; returns what is left at each level.
+    fn arrive(&mut self, rest: Rest, levels: &[f64]) -> [u64; MAX_LEVELS] {
+        let weights = weights(rest, levels);
         for (absorbed, weight) in self.absorbed.iter_mut().zip(&weights).take(levels.len()) {
-            *absorbed += PHOTON - weight;
+            *absorbed += rest.part - weight;
         }
         weights
     }
 
     pub(super) fn add(&mut self, other: &Self) {
         for (a, b) in self.texels.iter_mut().zip(&other.texels) {
+            *a += b;
+        }
+        for (a, b) in self.squares.iter_mut().zip(&other.squares) {
             *a += b;
         }
         self.photons += other.photons;
@@ -113,6 +138,9 @@ impl Tally {
                     self.texels[b] = sum / 2;
                     self.texels[a] = sum - sum / 2;
                 }
+                // The variance of half a sum of two that are independent.
+                let squares = (self.squares[texel] + self.squares[mirror]) / 4;
+                (self.squares[texel], self.squares[mirror]) = (squares, squares);
             }
         }
     }
@@ -133,16 +161,22 @@ impl Tally {
         flux
     }
 
-    /// Relative standard error of the clear level: photons there count 1 each. An upper bound where
-    /// they count less because something opaque was on their way.
+    /// Relative standard error of the clear level; infinite where nothing arrived.
     pub(super) fn error(&self) -> Vec<f32> {
-        let photons = |v: &u64| *v as f64 / PHOTON as f64;
-        self.texels
-            .iter()
-            .step_by(self.levels)
-            .map(|v| (1.0 / photons(v).sqrt()) as f32)
+        let sums = self.texels.iter().step_by(self.levels);
+        sums.zip(&self.squares)
+            .map(|(&sum, &squares)| match sum {
+                0 => f32::INFINITY,
+                _ => ((squares as f64 * PHOTON as f64).sqrt() / sum as f64) as f32,
+            })
             .collect()
     }
+}
+
+/// The square of a weight of at most one photon, in units of 2^-32.
+fn square(weight: u64) -> u64 {
+    // Half of one factor first, or one photon squared would not fit.
+    (weight * (weight >> 1)) / (PHOTON >> 1)
 }
 
 fn add(a: &mut [u64; MAX_LEVELS], b: &[u64; MAX_LEVELS]) {
@@ -151,14 +185,16 @@ fn add(a: &mut [u64; MAX_LEVELS], b: &[u64; MAX_LEVELS]) {
     }
 }
 
-/// The fixed-point weight `share * exp(-level * path)` of every level. Levels from the second on are a
+/// The fixed-point weight `part * share * exp(-level * path)` of every level. Levels from the second on are a
 /// geometric series of ratio 2, so each weight is the square of the one before.
 #[inline]
-fn weights(share: f64, path: f64, levels: &[f64]) -> [u64; MAX_LEVELS] {
+fn weights(rest: Rest, levels: &[f64]) -> [u64; MAX_LEVELS] {
     let mut weights = [0; MAX_LEVELS];
-    let clear = share * PHOTON as f64;
+    let clear = rest.share * rest.part as f64;
     weights[0] = clear as u64;
-    let mut left = levels.get(1).map_or(0.0, |first| (-first * path).exp());
+    let mut left = levels
+        .get(1)
+        .map_or(0.0, |first| (-first * rest.path).exp());
     for weight in weights.iter_mut().take(levels.len()).skip(1) {
         *weight = (left * clear) as u64;
         left *= left;
@@ -176,22 +212,32 @@ mod tests {
         let levels = absorption_levels(12);
         let cube = Unicube::new(4);
         let mut tally = Tally::new(cube.texels(), levels.len());
+        let mut emitted = 0;
         for i in 0..1000u32 {
-            let path = f64::from(i % 37) * 0.31;
-            let share = 1.0 / f64::from(1 + i % 7);
+            let rest = Rest {
+                part: PHOTON / u64::from(1 + i % 3),
+                share: 1.0 / f64::from(1 + i % 7),
+                path: f64::from(i % 37) * 0.31,
+            };
+            emitted += rest.part;
             match i % 10 {
-                0 => tally.truncate(share, path, &levels),
-                1 => tally.lose(share, path, &levels),
-                2 => tally.absorb(&levels),
-                _ => tally.escape(i as usize % cube.texels(), share, path, &levels),
+                0 => tally.truncate(rest, &levels),
+                1 => tally.lose(rest, &levels),
+                2 => tally.absorb(rest, &levels),
+                _ => tally.escape(i as usize % cube.texels(), rest, &levels),
             }
         }
         tally.fold(&cube);
         for l in tally.ledger() {
-            assert_eq!(l.emitted, l.escaped + l.absorbed + l.truncated + l.lost);
+            assert_eq!(emitted, l.escaped + l.absorbed + l.truncated + l.lost);
             assert!(l.truncated > 0 && l.lost > 0);
         }
-        let weights = weights(0.3, 0.7, &levels);
+        let rest = Rest {
+            part: PHOTON,
+            share: 0.3,
+            path: 0.7,
+        };
+        let weights = weights(rest, &levels);
         for (level, weight) in levels.iter().zip(weights) {
             let exact = 0.3 * (-level * 0.7).exp();
             assert!((weight as f64 / PHOTON as f64 - exact).abs() < 1e-9);
