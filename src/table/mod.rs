@@ -4,6 +4,7 @@
 //! level; dyeing it with a pigment gives [`ScatterMaps`] of linear RGB.
 
 mod check;
+mod compare;
 mod dye;
 mod error;
 mod exr;
@@ -12,13 +13,17 @@ mod nodes;
 mod plot;
 mod scatter;
 mod structure;
+mod taps;
 mod undyed;
 
 pub use self::exr::{FORMAT, TableFile};
+pub use compare::{
+    BinDifference, ChannelComparison, Comparison, Difference, THETA_MAX_DEG, TableRef, compare,
+};
 pub use error::TableError;
 pub use maps::ScatterMaps;
 pub use nodes::{Mode, Nodes};
-pub use plot::{Plot, draw_lobe};
+pub use plot::{DifferencePlot, Plot, draw_lobe};
 pub use scatter::{Lobe, ScatterTable};
 pub use structure::{Ledger, PHOTON, Provenance, StructureTable};
 pub use undyed::Undyed;

@@ -1,5 +1,6 @@
-//! `vair table`: what is in a table, dye it, draw it.
+//! `vair table`: what is in a table, dye it, draw it, compare it.
 
+mod compare;
 mod dye;
 mod info;
 mod plot;
@@ -21,6 +22,8 @@ enum Command {
     Info(info::Args),
     /// Give a structure table a pigment: absorption levels become linear RGB.
     Dye(dye::Args),
+    /// Tell how far a table is from another: relative L2, by bin, without noise.
+    Compare(compare::Args),
     /// Draw the scattering for one incidence: sphere map, lobe, albedo.
     Plot(plot::Args),
 }
@@ -30,6 +33,7 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     match &args.command {
         Command::Info(args) => info::run(args),
         Command::Dye(args) => dye::run(args, console),
+        Command::Compare(args) => compare::run(args, console),
         Command::Plot(args) => plot::run(args, console),
     }
 }

@@ -126,7 +126,7 @@ fn name(provenance: &Provenance) -> String {
 }
 
 /// `1600x1000`.
-fn parse_size(text: &str) -> Result<(usize, usize), String> {
+pub(super) fn parse_size(text: &str) -> Result<(usize, usize), String> {
     text.split_once('x')
         .and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)))
         .ok_or_else(|| "expected width and height in pixels, for example 1600x1000".to_owned())

@@ -22,6 +22,16 @@ pub(super) fn color(value: f32) -> Vec3 {
     srgb_of_oklab(lab)
 }
 
+/// The sRGB color of a signed value in -1..1: blue below, near white at zero, red above. Both ends are
+/// equally dark, so that in gray the size of a difference is left.
+pub(super) fn diverging(value: f32) -> Vec3 {
+    const ZERO: Vec3 = Vec3::new(0.97, 0.0, 0.0);
+    const ABOVE: Vec3 = Vec3::new(0.42, 0.16, 0.08);
+    const BELOW: Vec3 = Vec3::new(0.42, -0.03, -0.16);
+    let end = if value < 0.0 { BELOW } else { ABOVE };
+    srgb_of_oklab(ZERO.lerp(end, value.abs().min(1.0)))
+}
+
 fn srgb_of_oklab(lab: Vec3) -> Vec3 {
     let (l, a, b) = (lab.x, lab.y, lab.z);
     let cone = |ka: f32, kb: f32| (l + ka * a + kb * b).powi(3);

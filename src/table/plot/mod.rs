@@ -3,16 +3,20 @@
 
 mod albedo;
 mod colormap;
+mod difference;
 mod frame3d;
 mod lobe;
 mod sphere_map;
 mod text;
+
+pub use difference::DifferencePlot;
 
 use super::{ScatterMaps, ScatterTable, TableError};
 use crate::image::{Canvas, GLYPH_HEIGHT};
 use crate::math::frame;
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
+use sphere_map::MapStyle;
 use text::Pen;
 
 /// Everything is drawn this many times larger in each direction and averaged down.
@@ -59,18 +63,8 @@ impl Plot<'_> {
                 HEIGHTS.end()
             ));
         }
-        if !(-90.0..=90.0).contains(&self.incidence_deg) {
-            return request(format!(
-                "an incidence of {} degrees; -90 to 90 are possible",
-                self.incidence_deg
-            ));
-        }
-        if !self.maps.res.is_power_of_two() {
-            return request(format!(
-                "a table of {} texels a face edge; only powers of two can be looked up",
-                self.maps.res
-            ));
-        }
+        check_incidence(self.incidence_deg)?;
+        check_face(self.maps.res)?;
         let maps = self.maps;
         let table = ScatterTable::new(maps.nodes.clone(), maps.res, maps.rgb.clone());
         let theta = self.incidence_deg.to_radians();
@@ -78,11 +72,9 @@ impl Plot<'_> {
 
         let (w, h) = (width * SUPERSAMPLE, height * SUPERSAMPLE);
         let mut canvas = Canvas::new(w, h, PAPER);
-        // Letters grow with the picture: 1/75 of its height, in whole steps of the bitmap font.
-        let step = (h as f32 / (75.0 * GLYPH_HEIGHT)).min(w as f32 / (120.0 * GLYPH_HEIGHT));
-        let pen = Pen::new(step.max(1.0));
-        let margin = 2.0 * pen.line();
         let size = Vec2::new(w as f32, h as f32);
+        let pen = Pen::new(letter_scale(size.x, size.y));
+        let margin = 2.0 * pen.line();
 
         pen.left(
             &mut canvas,
@@ -100,7 +92,14 @@ impl Plot<'_> {
             min: Vec2::new(margin, top),
             max: Vec2::new(split - margin, floor),
         };
-        sphere_map::draw(&mut canvas, &pen, map_area, &field);
+        let title = "S cos θ per steradian over all directions";
+        sphere_map::draw(
+            &mut canvas,
+            &pen,
+            map_area,
+            &MapStyle::Density(&field),
+            title,
+        );
         let albedo_area = Area {
             min: Vec2::new(margin, floor + 1.5 * pen.line()),
             max: Vec2::new(split - margin, size.y - 0.5 * margin),
@@ -130,17 +129,8 @@ pub fn draw_lobe(
         let what = format!("a lobe of {width}x{height} pixels; 32x32 to 4096x4096 are possible");
         return Err(TableError::Request(what));
     }
-    if !(-90.0..=90.0).contains(&incidence_deg) {
-        let what = format!("an incidence of {incidence_deg} degrees; -90 to 90 are possible");
-        return Err(TableError::Request(what));
-    }
-    if !maps.res.is_power_of_two() {
-        let what = format!(
-            "a table of {} texels a face edge; powers of two are possible",
-            maps.res
-        );
-        return Err(TableError::Request(what));
-    }
+    check_incidence(incidence_deg)?;
+    check_face(maps.res)?;
     let table = ScatterTable::new(maps.nodes.clone(), maps.res, maps.rgb.clone());
     let photons = maps.ledger.iter().map(|l| l.photons()).sum::<f64>();
     let field = Field::new(
@@ -161,6 +151,31 @@ pub fn draw_lobe(
     };
     lobe::solid(&mut canvas, &Pen::new(1.0), area, &field, false, steps);
     Ok(canvas.downsampled(SUPERSAMPLE))
+}
+
+/// Letters grow with the picture, `width` x `height` pixels: 1/75 of its height, in whole steps of the
+/// bitmap font.
+fn letter_scale(width: f32, height: f32) -> f32 {
+    let step = (height / (75.0 * GLYPH_HEIGHT)).min(width / (120.0 * GLYPH_HEIGHT));
+    step.max(1.0)
+}
+
+fn check_incidence(degrees: f64) -> Result<(), TableError> {
+    if (-90.0..=90.0).contains(&degrees) {
+        return Ok(());
+    }
+    Err(TableError::Request(format!(
+        "an incidence of {degrees} degrees; -90 to 90 are possible"
+    )))
+}
+
+fn check_face(res: usize) -> Result<(), TableError> {
+    if res.is_power_of_two() {
+        return Ok(());
+    }
+    Err(TableError::Request(format!(
+        "a table of {res} texels a face edge; only powers of two can be looked up"
+    )))
 }
 
 /// A rectangle of the picture, pixels.
