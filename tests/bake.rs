@@ -2,11 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use vair::bake::{Settings, bake};
+use std::time::{Duration, Instant};
+use vair::bake::{Bake, Ended, Goal, Settings, bake};
 use vair::fiber::Fiber;
 use vair::progress::{Cancel, Silent};
 use vair::species::{Cuticle, CuticlePattern, Medulla, MedullaKind, Structure};
-use vair::table::{Provenance, StructureTable};
+use vair::table::{Provenance, StructureTable, Undyed};
 
 fn cylinder() -> Structure {
     Structure {
@@ -99,4 +100,103 @@ fn same_bytes_for_any_number_of_threads() {
         })
         .collect();
     assert!(tables[0] == tables[1] && tables[1] == tables[2]);
+}
+
+/// Passes are cut by the clock, so no two of these runs fly the same ones.
+#[test]
+fn passes_and_pauses_do_not_matter() {
+    let settings = Settings {
+        photons: 300_001,
+        ..Settings::cone()
+    };
+    let whole = run(&cylinder(), &settings);
+    let bake = Bake::new(&cylinder(), &settings).unwrap();
+    let cancel = Cancel::default();
+    let mut passes = 0;
+    let ended = loop {
+        // A time limit that is over at once makes passes small.
+        let goal = Goal {
+            until: (passes % 2 == 1).then(|| Instant::now() + Duration::from_millis(5)),
+            ..Goal::default()
+        };
+        match bake.refine(&goal, &Silent, &cancel) {
+            None => passes += 1,
+            Some(Ended::Time) => passes += 1,
+            Some(ended) => break ended,
+        }
+    };
+    assert_eq!(ended, Ended::Photons);
+    assert!(passes > 2, "{passes}");
+    assert!(bake.photons() == 300_001);
+    assert!(bake.snapshot(&Provenance::default()).unwrap() == Undyed::Gray(Box::new(whole)));
+}
+
+#[test]
+fn a_stopped_bake_is_a_shorter_one() {
+    let settings = Settings {
+        photons: u64::MAX >> 20,
+        bins: 4096,
+        ..Settings::cone()
+    };
+    assert!(Bake::new(&cylinder(), &settings).is_err());
+    let settings = Settings {
+        photons: 60_000_000_000,
+        ..Settings::cone()
+    };
+    let bake = Bake::new(&cylinder(), &settings).unwrap();
+    let cancel = Cancel::default();
+    assert!(bake.snapshot(&Provenance::default()).is_err());
+    // Polled from another thread while it runs.
+    let polled = std::thread::scope(|scope| {
+        let bake = &bake;
+        let flying = scope.spawn(|| bake.run(&Goal::default(), &Silent, &cancel));
+        while bake.photons() == 0 {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let polled = bake.snapshot(&Provenance::default()).unwrap();
+        cancel.cancel();
+        assert_eq!(flying.join().unwrap(), Ended::Cancelled);
+        polled
+    });
+    let polled = &polled.tables()[0];
+    let photons: u64 = (0..polled.nodes.len())
+        .map(|node| polled.ledger(node, 0).emitted >> 32)
+        .sum();
+    assert!(photons < 100_000_000);
+    let again = run(
+        &cylinder(),
+        &Settings {
+            photons,
+            ..settings
+        },
+    );
+    assert!(*polled == again);
+}
+
+#[test]
+fn an_error_goal_is_met_by_the_same_photons_every_time() {
+    let settings = Settings::cone();
+    let goal = Goal {
+        error: Some(0.1),
+        until: None,
+    };
+    let counts: Vec<u64> = [1, 3]
+        .into_iter()
+        .map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let bake = Bake::new(&cylinder(), &settings).unwrap();
+            let ended = pool
+                .build()
+                .unwrap()
+                .install(|| bake.run(&goal, &Silent, &Cancel::default()));
+            assert_eq!(ended, Ended::Error);
+            assert!(
+                bake.error() <= 0.1 && bake.error() > 0.08,
+                "{}",
+                bake.error()
+            );
+            bake.photons()
+        })
+        .collect();
+    assert_eq!(counts[0], counts[1]);
 }

@@ -2,18 +2,73 @@
 
 use super::Settings;
 use crate::species::Structure;
+use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 /// Raised whenever geometry, photon walk or tally change what comes out between two versions.
 const FORMAT: u32 = 4;
 
+/// Lists longer than this are named by their hash: a mesh has millions of corners.
+const LONGEST_LIST: usize = 64;
+
 /// SHA-256, in hexadecimal, of structure, settings, format and program version.
 pub fn content_hash(structure: &Structure, settings: &Settings) -> String {
+    Recipe::content(&Recipe::new(structure, settings).hash(), settings.photons)
+}
+
+/// Everything that decides the bits of a bake but its number of photons. Two bakes with equal
+/// recipes fly the same photons, one perhaps more of them.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Recipe(pub(super) Value);
+
+impl Recipe {
+    pub(super) fn new(structure: &Structure, settings: &Settings) -> Self {
+        let settings = Settings {
+            photons: 0,
+            ..settings.clone()
+        };
+        Self(serde_json::json!({
+            "format": FORMAT,
+            "program": env!("CARGO_PKG_VERSION"),
+            "structure": short(plain(structure)),
+            "settings": plain(&settings),
+        }))
+    }
+
+    /// SHA-256 in hexadecimal.
+    pub(super) fn hash(&self) -> String {
+        hex_digest(self.0.to_string().as_bytes())
+    }
+
+    /// The content hash of a table: the hash of its recipe, and how many photons.
+    pub(super) fn content(recipe_hash: &str, photons: u64) -> String {
+        hex_digest(format!("{recipe_hash} {photons}").as_bytes())
+    }
+}
+
+/// SHA-256 in hexadecimal.
+pub(super) fn hex_digest(bytes: &[u8]) -> String {
+    hex(&Sha256::digest(bytes))
+}
+
+pub(super) fn hex(digest: &[u8]) -> String {
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn plain(value: &(impl serde::Serialize + std::fmt::Debug)) -> Value {
     // Plain structs of finite numbers always serialize; the debug form is as unique.
-    let text = serde_json::to_string(&(FORMAT, env!("CARGO_PKG_VERSION"), structure, settings))
-        .unwrap_or_else(|_| format!("{FORMAT} {structure:?} {settings:?}"));
-    Sha256::digest(text.as_bytes())
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    serde_json::to_value(value).unwrap_or_else(|_| Value::String(format!("{value:?}")))
+}
+
+/// Long lists replaced by their hashes.
+fn short(value: Value) -> Value {
+    match value {
+        Value::Array(list) if list.len() > LONGEST_LIST => {
+            let text = Value::Array(list).to_string();
+            Value::String(format!("sha256 {}", hex_digest(text.as_bytes())))
+        }
+        Value::Array(list) => Value::Array(list.into_iter().map(short).collect()),
+        Value::Object(map) => Value::Object(map.into_iter().map(|(k, v)| (k, short(v))).collect()),
+        other => other,
+    }
 }

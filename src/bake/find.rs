@@ -1,8 +1,7 @@
 //! The tables of a structure: from the cache, or baked and put there.
 
 use super::settings::check;
-use super::{BakeError, Baked, Cache, Settings, bake, content_hash};
-use crate::fiber::Fiber;
+use super::{Bake, BakeError, Baked, Cache, Ended, Goal, Settings, content_hash};
 use crate::progress::{Cancel, Progress};
 use crate::species::Structure;
 use crate::table::{Provenance, StructureTable, Undyed};
@@ -22,56 +21,54 @@ pub fn find_or_bake(
     cancel: &Cancel,
 ) -> Result<Baked<Undyed>, BakeError> {
     check(settings)?;
-    let gray = |structure: &Structure, provenance| {
-        find_or_bake_gray(structure, settings, provenance, cache, progress, cancel)
-    };
-    if !structure.is_colored() {
-        let baked = gray(structure, provenance)?;
+    if let Some(table) = cache.and_then(|cache| find(structure, settings, &provenance, cache)) {
         return Ok(Baked {
-            table: Undyed::Gray(Box::new(baked.table)),
-            complete: baked.complete,
-        });
-    }
-    let red = gray(&structure.channel(0), provenance.clone())?;
-    let green = gray(&structure.channel(1), provenance.clone())?;
-    let blue = gray(&structure.channel(2), provenance)?;
-    Ok(Baked {
-        complete: red.complete && green.complete && blue.complete,
-        table: Undyed::Colored(Box::new([red.table, green.table, blue.table])),
-    })
-}
-
-fn find_or_bake_gray(
-    structure: &Structure,
-    settings: &Settings,
-    provenance: Provenance,
-    cache: Option<&Cache>,
-    progress: &dyn Progress,
-    cancel: &Cancel,
-) -> Result<Baked, BakeError> {
-    let content = content_hash(structure, settings);
-    if let Some(table) = cache.and_then(|cache| cache.get(&content)) {
-        // The same fiber may have been baked for another species: the table keeps its numbers and
-        // takes the new name.
-        let provenance = Provenance {
-            species: provenance.species,
-            class: provenance.class,
-            station: provenance.station,
-            species_text: provenance.species_text,
-            ..table.provenance
-        };
-        return Ok(Baked {
-            table: StructureTable {
-                provenance,
-                ..table
-            },
+            table,
             complete: true,
         });
     }
-    let fiber = Fiber::build(structure, settings.seed)?;
-    let baked = bake(&fiber, settings, provenance, progress, cancel)?;
-    if let (true, Some(cache)) = (baked.complete, cache) {
-        let _ = cache.put(&baked.table);
+    let bake = Bake::new(structure, settings)?;
+    let ended = bake.run(&Goal::default(), progress, cancel);
+    let table = bake.snapshot(&provenance)?;
+    let complete = ended == Ended::Photons;
+    if let (true, Some(cache)) = (complete, cache) {
+        for table in table.tables() {
+            let _ = cache.put(table);
+        }
     }
-    Ok(baked)
+    Ok(Baked { table, complete })
+}
+
+/// The tables of a structure if the cache has them all.
+fn find(
+    structure: &Structure,
+    settings: &Settings,
+    provenance: &Provenance,
+    cache: &Cache,
+) -> Option<Undyed> {
+    let gray = |structure: &Structure| {
+        let table = cache.get(&content_hash(structure, settings))?;
+        // The same fiber may have been baked for another species: the table keeps its numbers and
+        // takes the new name.
+        let provenance = Provenance {
+            species: provenance.species.clone(),
+            class: provenance.class.clone(),
+            station: provenance.station,
+            species_text: provenance.species_text.clone(),
+            ..table.provenance
+        };
+        Some(StructureTable {
+            provenance,
+            ..table
+        })
+    };
+    if !structure.is_colored() {
+        return gray(structure).map(|table| Undyed::Gray(Box::new(table)));
+    }
+    let channel = |channel| gray(&structure.channel(channel));
+    Some(Undyed::Colored(Box::new([
+        channel(0)?,
+        channel(1)?,
+        channel(2)?,
+    ])))
 }

@@ -11,8 +11,13 @@ mod content;
 mod entry;
 mod find;
 mod fork;
+mod goal;
 mod microfacet;
+mod noise;
+mod pass;
 mod photon;
+mod plan;
+mod progressive;
 mod settings;
 mod shot;
 mod tally;
@@ -21,16 +26,14 @@ pub use cache::{Cache, CacheSize};
 pub use content::content_hash;
 pub use entry::{Photon, fly, fly_forked};
 pub use find::find_or_bake;
+pub use goal::{Ended, Goal};
 pub use photon::{End, Flight, follow};
+pub use progressive::Bake;
 pub use settings::{BakeError, Settings, absorption_levels};
 
 use crate::fiber::Fiber;
-use crate::math::unicube::Unicube;
 use crate::progress::{Cancel, Progress};
-use crate::table::{Nodes, Provenance, StructureTable};
-use settings::check;
-use shot::Shot;
-use tally::Tally;
+use crate::table::{Provenance, StructureTable, Undyed};
 
 /// A finished (or stopped) bake.
 #[derive(Debug)]
@@ -41,13 +44,13 @@ pub struct Baked<T = StructureTable> {
     pub complete: bool,
 }
 
-/// A bake runs in passes over all nodes, so that a stopped one is an even, noisier table.
-const PASSES: u64 = 8;
-
-/// Bakes a fiber.
+/// Bakes a fiber in one go. [`Bake`] is the same in passes.
 ///
 /// * `provenance`: what is already known of the table's origin; seed, events, program and content
 ///   hash are filled in here.
+///
+/// # Errors
+/// Settings out of range; [`BakeError::Stopped`] if cancelled before the first pass was done.
 pub fn bake(
     fiber: &Fiber,
     settings: &Settings,
@@ -55,70 +58,14 @@ pub fn bake(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Baked, BakeError> {
-    check(settings)?;
-    let nodes = Nodes::new(settings.mode, settings.bins);
-    let cube = Unicube::new(settings.face);
-    let mut tallies: Vec<Tally> = (0..nodes.len())
-        .map(|_| Tally::new(cube.texels(), settings.levels.len()))
-        .collect();
-    let per_node = |node: u64| share(settings.photons, settings.bins as u64, node);
-
-    progress.begin("baking", settings.photons, "photons");
-    let mut complete = true;
-    'passes: for pass in 0..PASSES {
-        let mut fresh = Vec::with_capacity(nodes.len());
-        for node in 0..nodes.len() {
-            let total = per_node(node as u64);
-            let range = total * pass / PASSES..total * (pass + 1) / PASSES;
-            let shot = Shot {
-                fiber,
-                settings,
-                nodes: &nodes,
-                cube: &cube,
-                node,
-            };
-            match shot.fly_range(range, progress, cancel) {
-                Some(tally) => fresh.push(tally),
-                None => {
-                    complete = false;
-                    break 'passes;
-                }
-            }
-        }
-        for (sum, tally) in tallies.iter_mut().zip(&fresh) {
-            sum.add(tally);
-        }
+    let bake = Bake::of_fiber(fiber, settings)?;
+    let ended = bake.run(&Goal::default(), progress, cancel);
+    match bake.snapshot(&provenance)? {
+        Undyed::Gray(table) => Ok(Baked {
+            table: *table,
+            complete: ended == Ended::Photons,
+        }),
+        // One fiber is one channel.
+        Undyed::Colored(_) => Err(BakeError::Stopped),
     }
-    progress.finish();
-    if tallies.iter().any(|t| t.is_empty()) {
-        return Err(BakeError::Stopped);
-    }
-    if settings.fold && fiber.is_mirror_symmetric() {
-        for tally in &mut tallies {
-            tally.fold(&cube);
-        }
-    }
-    let provenance = Provenance {
-        seed: settings.seed,
-        max_events: settings.max_events,
-        content: content_hash(fiber.structure(), settings),
-        program: concat!("vair ", env!("CARGO_PKG_VERSION")).to_owned(),
-        ..provenance
-    };
-    let table = StructureTable {
-        nodes,
-        res: settings.face,
-        levels: settings.levels.clone(),
-        radius_um: 0.5 * fiber.structure().diameter_um,
-        flux: tallies.iter().flat_map(Tally::flux).collect(),
-        error: tallies.iter().flat_map(Tally::error).collect(),
-        ledger: tallies.iter().flat_map(Tally::ledger).collect(),
-        provenance,
-    };
-    Ok(Baked { table, complete })
-}
-
-/// Part `index` of `total` split into `parts` as evenly as integers allow.
-fn share(total: u64, parts: u64, index: u64) -> u64 {
-    total / parts + u64::from(index < total % parts)
 }

@@ -1,12 +1,12 @@
 //! What a bake is asked for, its limits and its errors.
 
-use super::{PASSES, tally};
+use super::tally;
 use crate::blame::Blame;
 use crate::fiber::FiberError;
 use crate::table::Mode;
 
 /// How to bake.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Settings {
     /// Paper or cone mode.
     pub mode: Mode,
@@ -99,6 +99,12 @@ impl BakeError {
     }
 }
 
+/// Below this a table is all holes.
+const LEAST_A_NODE: u64 = 8;
+/// A sum of this many photons in units of 2^-32 still fits 64 bits, whatever texel they go to. With
+/// 16 nodes these are 6.9e10 photons. (One may come on top by uneven division: it fits, too.)
+const MOST_A_NODE: u64 = (1 << 32) - 2;
+
 /// Refuses settings out of range.
 pub(super) fn check(settings: &Settings) -> Result<(), BakeError> {
     let refuse = |name, found: String, expected| {
@@ -118,13 +124,12 @@ pub(super) fn check(settings: &Settings) -> Result<(), BakeError> {
             "a power of two from 4 to 512",
         );
     }
-    // Above 2^32 photons the fixed-point sums of one texel could overflow.
-    let least = settings.bins as u64 * PASSES;
-    if !(least..1 << 32).contains(&settings.photons) {
+    let photons = LEAST_A_NODE..=MOST_A_NODE;
+    if !photons.contains(&(settings.photons / settings.bins as u64)) {
         return refuse(
             "photons",
             settings.photons.to_string(),
-            "8 a bin to 4294967295",
+            "8 to 4294967295 a bin",
         );
     }
     if !(1..=1_000_000).contains(&settings.max_events) {

@@ -4,13 +4,8 @@ use super::tally::{Rest, Tally};
 use super::{End, Flight, Photon, Settings, fly, fly_forked};
 use crate::fiber::Fiber;
 use crate::math::unicube::Unicube;
-use crate::progress::{Cancel, Progress};
 use crate::table::{Mode, Nodes, PHOTON};
-use rayon::prelude::*;
-use std::sync::atomic::{AtomicU64, Ordering};
-
-/// Photons that one thread flies between two looks at the cancel flag.
-const BATCH: u64 = 4096;
+use std::ops::Range;
 
 /// The photons of one node.
 pub(super) struct Shot<'a> {
@@ -22,42 +17,16 @@ pub(super) struct Shot<'a> {
 }
 
 impl Shot<'_> {
-    /// Flies a range of photon indices on all threads. `None` if cancelled.
-    pub(super) fn fly_range(
-        &self,
-        range: std::ops::Range<u64>,
-        progress: &dyn Progress,
-        cancel: &Cancel,
-    ) -> Option<Tally> {
-        let next = AtomicU64::new(range.start);
-        let workers = rayon::current_num_threads();
-        let tallies: Vec<Tally> = (0..workers)
-            .into_par_iter()
-            .map(|_| {
-                let mut tally = Tally::new(self.cube.texels(), self.settings.levels.len());
-                while !cancel.is_cancelled() {
-                    let start = next.fetch_add(BATCH, Ordering::Relaxed);
-                    if start >= range.end {
-                        break;
-                    }
-                    let end = (start + BATCH).min(range.end);
-                    for index in start..end {
-                        self.fly_one(index, &mut tally);
-                    }
-                    progress.advance(end - start);
-                }
-                tally
-            })
-            .collect();
-        if cancel.is_cancelled() {
-            return None;
+    /// A tally for this node's photons.
+    pub(super) fn empty_tally(&self) -> Tally {
+        Tally::new(self.cube.texels(), self.settings.levels.len())
+    }
+
+    /// Flies a range of photon indices.
+    pub(super) fn fly(&self, range: Range<u64>, tally: &mut Tally) {
+        for index in range {
+            self.fly_one(index, tally);
         }
-        let mut tallies = tallies.into_iter();
-        let mut sum = tallies.next()?;
-        for tally in tallies {
-            sum.add(&tally);
-        }
-        Some(sum)
     }
 
     fn fly_one(&self, index: u64, tally: &mut Tally) {

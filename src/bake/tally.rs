@@ -54,6 +54,39 @@ impl Tally {
         self.photons == 0
     }
 
+    /// Photons that hit the fiber.
+    pub(super) fn photons(&self) -> u64 {
+        self.photons
+    }
+
+    /// Forgets everything.
+    pub(super) fn clear(&mut self) {
+        for (_, sums) in self.arrays_mut() {
+            sums.fill(0);
+        }
+    }
+
+    /// All sums by name.
+    pub(super) fn arrays_mut(&mut self) -> [(&'static str, &mut [u64]); 6] {
+        [
+            ("photons", std::slice::from_mut(&mut self.photons)),
+            ("absorbed", &mut self.absorbed[..self.levels]),
+            ("truncated", &mut self.truncated[..self.levels]),
+            ("lost", &mut self.lost[..self.levels]),
+            ("texels", &mut self.texels),
+            ("squares", &mut self.squares),
+        ]
+    }
+
+    /// What left through a texel at the clear level and the variance of that, in photons.
+    pub(super) fn at_clear(&self, texel: usize) -> (f64, f64) {
+        let photons = |sum: u64| sum as f64 / PHOTON as f64;
+        (
+            photons(self.texels[texel * self.levels]),
+            photons(self.squares[texel]),
+        )
+    }
+
     /// A photon was sent out. Its parts follow.
     pub(super) fn emit(&mut self) {
         self.photons += 1;

@@ -1,0 +1,124 @@
+//! What turns sums into tables: all that a bake knows beside its photons.
+
+use super::content::Recipe;
+use super::tally::Tally;
+use super::{BakeError, Settings};
+use crate::fiber::Fiber;
+use crate::math::unicube::Unicube;
+use crate::table::{Nodes, Provenance, StructureTable, Undyed};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// Settings and what the fiber adds to them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Plan {
+    /// The settings; their number of photons is what the whole bake is to have.
+    pub(super) settings: Settings,
+    /// Mean radius of the fiber, micrometers.
+    pub(super) radius_um: f64,
+    /// Whether maps are averaged with their mirror images.
+    pub(super) folded: bool,
+    /// Hash of the recipe of each channel: one, or three where materials differ by color.
+    pub(super) recipes: Vec<String>,
+}
+
+impl Plan {
+    pub(super) fn new(fibers: &[&Fiber], settings: &Settings) -> Self {
+        Self {
+            settings: settings.clone(),
+            radius_um: fibers
+                .first()
+                .map_or(0.0, |f| 0.5 * f.structure().diameter_um),
+            folded: settings.fold && fibers.iter().all(|f| f.is_mirror_symmetric()),
+            recipes: fibers
+                .iter()
+                .map(|f| Recipe::new(f.structure(), settings).hash())
+                .collect(),
+        }
+    }
+
+    pub(super) fn nodes(&self) -> Nodes {
+        Nodes::new(self.settings.mode, self.settings.bins)
+    }
+
+    /// Sums to be kept: one a node and channel, channel by channel.
+    pub(super) fn units(&self) -> usize {
+        self.recipes.len() * self.settings.bins
+    }
+
+    /// An empty sum of one node.
+    pub(super) fn empty_tally(&self) -> Tally {
+        let texels = 6 * self.settings.face * self.settings.face;
+        Tally::new(texels, self.settings.levels.len())
+    }
+
+    /// The tables of `photons` photons that are summed up in `tallies`.
+    ///
+    /// # Errors
+    /// [`BakeError::Stopped`] if a node has no photon yet.
+    pub(super) fn tables(
+        &self,
+        tallies: &[Tally],
+        photons: u64,
+        provenance: &Provenance,
+    ) -> Result<Undyed, BakeError> {
+        if tallies.iter().any(Tally::is_empty) {
+            return Err(BakeError::Stopped);
+        }
+        let mut tables = self
+            .recipes
+            .iter()
+            .zip(tallies.chunks(self.settings.bins))
+            .map(|(recipe, tallies)| self.table(recipe, tallies, photons, provenance));
+        match (tables.next(), tables.next(), tables.next()) {
+            (Some(red), Some(green), Some(blue)) => {
+                Ok(Undyed::Colored(Box::new([red, green, blue])))
+            }
+            (Some(gray), ..) => Ok(Undyed::Gray(Box::new(gray))),
+            _ => Err(BakeError::Stopped),
+        }
+    }
+
+    fn table(
+        &self,
+        recipe: &str,
+        tallies: &[Tally],
+        photons: u64,
+        provenance: &Provenance,
+    ) -> StructureTable {
+        let cube = Unicube::new(self.settings.face);
+        // One map at a time and thread is copied, to be folded.
+        let maps: Vec<_> = tallies
+            .par_iter()
+            .map(|tally| {
+                let mut tally = tally.clone();
+                if self.folded {
+                    tally.fold(&cube);
+                }
+                (tally.flux(), tally.error(), tally.ledger())
+            })
+            .collect();
+        let mut table = StructureTable {
+            nodes: self.nodes(),
+            res: self.settings.face,
+            levels: self.settings.levels.clone(),
+            radius_um: self.radius_um,
+            flux: Vec::new(),
+            error: Vec::new(),
+            ledger: Vec::new(),
+            provenance: Provenance {
+                seed: self.settings.seed,
+                max_events: self.settings.max_events,
+                content: Recipe::content(recipe, photons),
+                program: concat!("vair ", env!("CARGO_PKG_VERSION")).to_owned(),
+                ..provenance.clone()
+            },
+        };
+        for (flux, error, ledger) in maps {
+            table.flux.extend(flux);
+            table.error.extend(error);
+            table.ledger.extend(ledger);
+        }
+        table
+    }
+}
