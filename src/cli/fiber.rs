@@ -64,6 +64,10 @@ pub(super) struct Args {
         allow_negative_numbers = true
     )]
     focus: f64,
+    /// Light microscope: how much brighter the lamp is than for the empty field, stops; if not given,
+    /// as bright as dark hair needs.
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    lamp: Option<f64>,
     /// Leave the caption out; a scale bar stays.
     #[arg(long)]
     no_caption: bool,
@@ -127,6 +131,7 @@ fn view(args: &Args) -> (View, Shot) {
                 objective: args.aperture,
                 condenser: args.condenser.unwrap_or(args.aperture),
                 focus_um: args.focus,
+                lamp_ev: args.lamp,
             };
             (View::Light(microscope), 64)
         }

@@ -177,17 +177,7 @@ impl Fiber {
     fn from_mesh(mesh: &FiberMesh, structure: &Structure) -> Result<Self, FiberError> {
         let triangles = Triangles::new(mesh, &structure.medulla)?;
         let section = Section::of(structure)?;
-        let medium = match structure.medulla.kind {
-            MedullaKind::Medium {
-                scattering_per_um,
-                asymmetry,
-            } => Some(Homogeneous {
-                scattering_per_um,
-                asymmetry,
-                pigment: structure.medulla.pigment,
-            }),
-            _ => None,
-        };
+        let medium = medium_of_mesh(structure);
         let period_um = triangles.period_um();
         Ok(Self {
             structure: structure.clone(),
@@ -212,6 +202,17 @@ impl Fiber {
     /// What was mended in a designer's mesh or is odd about it, one sentence each.
     pub fn warnings(&self) -> &[String] {
         self.triangles.as_ref().map_or(&[], |t| &t.warnings)
+    }
+
+    /// The same fiber as light of one color sees it; itself where no material differs by color. In air.
+    ///
+    /// * `channel`: 0 red, 1 green, 2 blue.
+    #[must_use]
+    pub fn in_channel(mut self, channel: usize) -> Self {
+        let structure = self.structure.channel(channel);
+        let of_mesh = self.triangles.as_ref().and(medium_of_mesh(&structure));
+        self.optics = OpticalParts::new(&structure, self.medulla.medium.as_ref().or(of_mesh.as_ref()));
+        self
     }
 
     /// The same fiber in another medium than air: the resin under a cover slip, water.
@@ -311,5 +312,20 @@ impl Fiber {
             return triangles.air_fraction;
         }
         self.medulla.air_fraction(&self.section, self.period_um)
+    }
+}
+
+/// What a mesh's outline of a medulla holds if that is a medium.
+fn medium_of_mesh(structure: &Structure) -> Option<Homogeneous> {
+    match structure.medulla.kind {
+        MedullaKind::Medium {
+            scattering_per_um,
+            asymmetry,
+        } => Some(Homogeneous {
+            scattering_per_um,
+            asymmetry,
+            pigment: structure.medulla.pigment,
+        }),
+        _ => None,
     }
 }

@@ -165,13 +165,10 @@ impl GalleryError {
     }
 }
 
-/// The station where a hair is thickest, the last of equals: where it has all its parts.
+/// The station where a hair is thickest, the lowest of equals: farther up the medulla may have ended.
 fn widest(class: &HairClass) -> &Station {
-    let diameter = |station: &Station| station.structure.diameter_um;
     // A validated class has a station.
-    let first = &class.stations[0];
-    let wider = |a, b| if diameter(b) >= diameter(a) { b } else { a };
-    class.stations.iter().fold(first, wider)
+    class.widest().unwrap_or(&class.stations[0])
 }
 
 /// Makes pictures of animals.

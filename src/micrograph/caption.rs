@@ -1,7 +1,10 @@
 //! What a caption says about a fiber.
 
 use super::Subject;
-use crate::species::{Continuity, CuticlePattern, Margin, MedullaKind, Section, Structure};
+use crate::species::{
+    Continuity, CuticlePattern, FiberMesh, Margin, MedullaKind, MeshRole, Section, Structure,
+};
+use std::path::Path;
 
 /// The facts of a fiber in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,7 +63,23 @@ fn size(structure: &Structure) -> String {
     format!("{} \u{b5}m thick, {shape}", brief(structure.diameter_um))
 }
 
+/// The parts of a mesh in one of some roles: how many triangles, and from which file. `None` without
+/// any.
+fn of_mesh(mesh: &FiberMesh, roles: &[MeshRole]) -> Option<String> {
+    let wanted = |part: &&u32| {
+        let role = mesh.roles.get(**part as usize);
+        role.is_some_and(|role| roles.contains(role))
+    };
+    let count = mesh.content.mesh().part.iter().filter(wanted).count();
+    let file = Path::new(&mesh.file).file_name()?.to_string_lossy();
+    (count > 0).then(|| format!("{count} triangles of {file}"))
+}
+
 fn cuticle(structure: &Structure) -> String {
+    if let Some(mesh) = &structure.mesh {
+        let triangles = of_mesh(mesh, &[MeshRole::Cuticle, MeshRole::Riser]);
+        return format!("cuticle: {}", triangles.as_deref().unwrap_or("none"));
+    }
     let cuticle = &structure.cuticle;
     if cuticle.pattern == CuticlePattern::Smooth {
         return "cuticle: smooth".to_owned();
@@ -84,6 +103,19 @@ fn cuticle(structure: &Structure) -> String {
 
 fn medulla(structure: &Structure, air: f64) -> String {
     let medulla = &structure.medulla;
+    let inside = if medulla.void_ior < 1.1 {
+        "air"
+    } else {
+        "flooded voids"
+    };
+    if let Some(mesh) = &structure.mesh {
+        let triangles = of_mesh(mesh, &[MeshRole::Medulla, MeshRole::Void]);
+        let mut text = format!("medulla: {}", triangles.as_deref().unwrap_or("none"));
+        if air > 0.0 {
+            text += &format!(", {:.0} % {inside}", 100.0 * air);
+        }
+        return text;
+    }
     if medulla.kind == MedullaKind::None || medulla.ratio <= 0.0 {
         return "medulla: none".to_owned();
     }
@@ -96,11 +128,6 @@ fn medulla(structure: &Structure, air: f64) -> String {
     let index = medulla.ratio;
     let mut text = format!("medulla: {runs}{kind}, index {index:.2}");
     if air > 0.0 {
-        let inside = if medulla.void_ior < 1.1 {
-            "air"
-        } else {
-            "flooded voids"
-        };
         text += &format!(", {:.0} % {inside}", 100.0 * air);
     }
     text

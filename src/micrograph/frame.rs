@@ -92,13 +92,18 @@ fn caption(subject: &Subject, view: View) -> Vec<String> {
             "scanning electron microscope, stage tilted {:.0}\u{b0}",
             tilt.to_degrees()
         ),
-        View::Light(m) if m.mount == 1.0 => {
-            format!("transmitted light, dry, aperture {:.2}", m.objective)
+        View::Light(m) => {
+            let mount = if m.mount == 1.0 {
+                ", dry".to_owned()
+            } else {
+                format!(" in a medium of index {:.2}", m.mount)
+            };
+            let lamp = match m.lamp_ev {
+                Some(ev) if ev != 0.0 => format!(", lamp {ev:+} EV"),
+                _ => String::new(),
+            };
+            format!("transmitted light{mount}, aperture {:.2}{lamp}", m.objective)
         }
-        View::Light(m) => format!(
-            "transmitted light in a medium of index {:.2}, aperture {:.2}",
-            m.mount, m.objective
-        ),
         View::Section => "cross-section".to_owned(),
         View::Cutaway => "front quarter cut away".to_owned(),
         View::Plate => String::new(),

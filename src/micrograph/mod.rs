@@ -145,6 +145,10 @@ pub fn draw(
     cancel: &Cancel,
 ) -> Result<Canvas, MicrographError> {
     check(view, shot)?;
+    let view = match view {
+        View::Light(microscope) => View::Light(microscope.lit_for(subject)),
+        view => view,
+    };
     let raster = Raster {
         samples: shot.samples,
         progress,

@@ -68,6 +68,7 @@ fn a_cylinder_in_air_has_dark_edges_and_a_bright_middle() {
             objective: 0.05,
             condenser: 0.3,
             focus_um: 0.0,
+            lamp_ev: Some(0.0),
         });
         let canvas = picture(narrow, subject, &shot(96, 64, 256));
         let field = row_mean(&canvas, 0);
@@ -109,6 +110,7 @@ fn pigment_absorbs_along_the_path() {
             objective: 0.02,
             condenser: 0.02,
             focus_um: 0.0,
+            lamp_ev: Some(0.0),
         };
         let absorption = DVec3::from_array(absorption_at(subject.class, subject.station));
         let fiber = subject.fiber.clone().mounted_in(1.52);
@@ -218,6 +220,7 @@ fn settings_out_of_range_are_refused() {
             objective: aperture,
             condenser: aperture,
             focus_um: 0.0,
+            lamp_ev: Some(0.0),
         });
         assert!(check(view, &good).is_err(), "{mount} {aperture}");
     }

@@ -228,10 +228,11 @@ pub(crate) fn closest<'a>(
         .map(|(_, c)| c)
 }
 
-/// ``did you mean `x`?`` or the list of what is allowed.
+/// ``did you mean `x`?`` or the list of what is allowed, which may be empty.
 pub(crate) fn suggestion(suggested: Option<&str>, all: &[&str]) -> String {
     match suggested {
         Some(one) => format!("did you mean `{one}`?"),
+        None if all.is_empty() => "none is known here".to_owned(),
         None => format!("known here: {}", all.join(", ")),
     }
 }

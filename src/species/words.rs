@@ -1,7 +1,9 @@
 //! The model in words, for people who read rather than compute.
 
 use super::fields::{MEDULLAE, PATTERNS};
-use super::model::{Continuity, HairClass, MedullaKind, PigmentBand, Station};
+use super::model::{
+    Continuity, HairClass, MedullaKind, PigmentBand, REFERENCE_RADIUS_UM, Station,
+};
 use super::pattern::CuticlePattern;
 use super::shape::Choice;
 
@@ -47,15 +49,27 @@ impl HairClass {
 const YELLOW: f64 = 0.7;
 
 /// Below this share pheomelanin does not show beside eumelanin.
-const GRAY: f64 = 0.1;
+const GRAY: f64 = 0.06;
 
-impl PigmentBand {
-    /// Color of a hair with this pigment: `dark brown`, `orange`. A word for the field guide; what the
-    /// hair looks like in light is the renderer's to say.
-    pub fn color_word(&self) -> &'static str {
-        let (dark, yellow) = (self.eumelanin, self.pheomelanin);
-        let amount = dark + 0.5 * yellow;
-        let share = if amount > 0.0 {
+/// Share of keratin in a lattice, which is most of the hair: light meets little else than air there.
+const KERATIN_OF_A_LATTICE: f64 = 0.2;
+
+impl HairClass {
+    /// Color of a coat of hairs with such pigment: `dark brown`, `orange`. A word for the field guide;
+    /// what the coat looks like in light is the renderer's to say.
+    ///
+    /// Light goes some five radii through a hair whether it has a medulla or not, being caught between
+    /// its scales (bakes of all built-in animals): what counts is the pigment times the thickness.
+    pub fn color_word(&self, band: &PigmentBand) -> &'static str {
+        let (dark, yellow) = (band.eumelanin, band.pheomelanin);
+        let is_lattice = |s: &Station| matches!(s.structure.medulla.kind, MedullaKind::Lattice { .. });
+        let keratin = match self.widest() {
+            Some(station) if is_lattice(station) => KERATIN_OF_A_LATTICE,
+            _ => 1.0,
+        };
+        let thickness = keratin * self.groom.diameter_um / (2.0 * REFERENCE_RADIUS_UM);
+        let amount = (dark + 0.5 * yellow) * thickness;
+        let share = if dark + yellow > 0.0 {
             yellow / (dark + yellow)
         } else {
             0.0
@@ -68,33 +82,33 @@ impl PigmentBand {
             of(
                 &[
                     (0.01, "white"),
-                    (0.2, "cream"),
-                    (0.9, "buff"),
-                    (1.7, "tan"),
-                    (2.6, "orange"),
+                    (0.05, "cream"),
+                    (0.15, "buff"),
+                    (0.25, "tan"),
+                    (0.5, "orange"),
                 ],
                 "rust",
             )
         } else if share < GRAY {
             of(
                 &[
-                    (0.05, "white"),
-                    (0.5, "pale gray"),
-                    (1.0, "gray"),
-                    (2.0, "dark gray"),
-                    (3.5, "black-brown"),
+                    (0.02, "white"),
+                    (0.15, "pale gray"),
+                    (0.4, "gray"),
+                    (0.9, "dark gray"),
+                    (1.4, "black-brown"),
                 ],
                 "black",
             )
         } else {
             of(
                 &[
-                    (0.05, "white"),
-                    (0.3, "cream"),
-                    (0.6, "pale brown"),
-                    (1.2, "gray-brown"),
-                    (2.4, "brown"),
-                    (4.8, "dark brown"),
+                    (0.02, "white"),
+                    (0.08, "cream"),
+                    (0.2, "pale brown"),
+                    (0.3, "gray-brown"),
+                    (0.8, "brown"),
+                    (1.5, "dark brown"),
                 ],
                 "black-brown",
             )
@@ -127,21 +141,32 @@ mod tests {
 
     #[test]
     fn colors_of_known_hairs() {
+        let class = |id: &str| crate::species::load(id, &[]).unwrap().classes.swap_remove(0);
+        let human = class("human");
         let word = |eumelanin, pheomelanin| {
-            let band = PigmentBand {
+            human.color_word(&PigmentBand {
                 to_mm: f64::INFINITY,
                 softness_mm: 0.0,
                 eumelanin,
                 pheomelanin,
-            };
-            band.color_word()
+            })
         };
         // Concentrations of hair shaders: blond 0.3, brown 1.3, black 8; red with little eumelanin.
         assert_eq!(word(0.0, 0.0), "white");
         assert_eq!(word(8.0, 0.0), "black");
-        assert_eq!(word(1.3, 0.6), "brown");
-        assert_eq!(word(0.02, 4.0), "orange");
-        assert_eq!(word(0.6, 0.0), "gray");
-        assert_eq!(word(0.0, 0.6), "buff");
+        assert_eq!(word(0.3, 0.1), "brown");
+        assert_eq!(word(1.3, 0.1), "dark brown");
+        assert_eq!(word(0.02, 0.8), "orange");
+        assert_eq!(word(0.02, 1.6), "rust");
+        for (id, words) in [
+            ("red-fox", &["black-brown", "orange", "dark gray"][..]),
+            ("wolf", &["black", "white", "black-brown", "white"]),
+            ("mink", &["dark brown"]),
+            ("polar-bear", &["white"]),
+        ] {
+            let class = class(id);
+            let found: Vec<&str> = class.pigment.iter().map(|b| class.color_word(b)).collect();
+            assert_eq!(found, words, "{id}");
+        }
     }
 }

@@ -113,7 +113,7 @@ pub(super) fn color(class: &HairClass) -> String {
     let mut words = Vec::new();
     let mut from = 0.0;
     for band in &class.pigment {
-        let word = band.color_word();
+        let word = class.color_word(band);
         let place = match (from > 0.0, band.to_mm.is_finite()) {
             (false, false) => "from tip to root".to_owned(),
             (false, true) => format!("for the first {} mm from the tip", short(band.to_mm)),

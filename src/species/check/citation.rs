@@ -186,7 +186,11 @@ impl Checker<'_> {
                 Data::Text(key) => {
                     let message =
                         format!("`{path}` is {}, expected a key of [sources]", quote(key));
-                    let hint = suggestion(closest(key, known.iter().copied()), &known);
+                    let hint = if known.is_empty() {
+                        format!("name it there: {key} = \"who, when, what\"")
+                    } else {
+                        suggestion(closest(key, known.iter().copied()), &known)
+                    };
                     self.problems.push(&item.place, message, Some(hint));
                 }
                 _ => {

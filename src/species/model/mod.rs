@@ -73,11 +73,20 @@ pub struct PigmentBand {
 /// Radius for which melanin concentrations are stated, micrometers: a human hair.
 pub const REFERENCE_RADIUS_UM: f64 = 40.0;
 
-/// Absorption of unit eumelanin per reference radius, linear Rec.709 (pbrt after d'Eon 2011).
-pub const EUMELANIN: [f64; 3] = [0.419, 0.697, 1.37];
+/// Absorption of unit eumelanin per reference radius, linear Rec.709.
+///
+/// The spectrum is the measured one of Sarna & Swartz 1988, scaled at 550 nm to the value of hair
+/// shaders (0.697, d'Eon 2011), so that their concentrations hold here. A channel's coefficient is
+/// what is taken from its share of daylight (D65, CIE 1931) on one reference radius of way. Shaders
+/// have (0.419, 0.697, 1.37): a power law of skin at 650, 550 and 450 nm.
+pub const EUMELANIN: [f64; 3] = [0.388, 0.737, 1.37];
 
-/// Absorption of unit pheomelanin per reference radius, linear Rec.709 (pbrt after d'Eon 2011).
-pub const PHEOMELANIN: [f64; 3] = [0.187, 0.4, 1.05];
+/// Absorption of unit pheomelanin per reference radius, linear Rec.709.
+///
+/// As [`EUMELANIN`], with 0.4 at 550 nm. Shaders have (0.187, 0.4, 1.05), half of the measured
+/// distance between red and green: no amount of that makes thick fur redder than tan, because what
+/// comes back from many hairs goes with the root of the absorption.
+pub const PHEOMELANIN: [f64; 3] = [0.119, 0.425, 1.16];
 
 impl PigmentBand {
     /// Absorption coefficient per micrometer for linear R, G, B. Physical: it does not depend on

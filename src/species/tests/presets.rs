@@ -221,13 +221,14 @@ fn underhairs_are_what_their_literature_says() {
 #[test]
 fn coats_have_the_color_that_their_literature_says() {
     let bands = |id: &str| load(id, &[]).unwrap().classes.swap_remove(0).pigment;
-    let dark = |b: &PigmentBand| b.absorption_per_um()[1] > 0.03;
+    // A coat of it is darker than a mid brown: light goes some 300 um through hair of 130 um.
+    let dark = |b: &PigmentBand| b.absorption_per_um()[1] > 0.006;
     // From the tip: which bands are dark.
     for (id, expected) in [
         ("wolf", &[true, false, true, false][..]),
         ("raccoon", &[true, false, true, false]),
         ("badger", &[false, true, false]),
-        ("red-fox", &[true, true, false]),
+        ("red-fox", &[true, true, true]),
         ("mink", &[true]),
         ("arctic-fox", &[false]),
     ] {
