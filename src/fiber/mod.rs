@@ -211,7 +211,10 @@ impl Fiber {
     pub fn in_channel(mut self, channel: usize) -> Self {
         let structure = self.structure.channel(channel);
         let of_mesh = self.triangles.as_ref().and(medium_of_mesh(&structure));
-        self.optics = OpticalParts::new(&structure, self.medulla.medium.as_ref().or(of_mesh.as_ref()));
+        self.optics = OpticalParts::new(
+            &structure,
+            self.medulla.medium.as_ref().or(of_mesh.as_ref()),
+        );
         self
     }
 

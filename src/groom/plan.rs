@@ -150,8 +150,7 @@ fn share(natural: &[f64], weights: &[f64], total: usize) -> Vec<usize> {
             .filter(|&i| natural[i] <= per_weight * weights[i])
             .collect();
         if full.is_empty() {
-            let shares = (0..natural.len())
-                .map(|i| counts[i].unwrap_or(per_weight * weights[i]));
+            let shares = (0..natural.len()).map(|i| counts[i].unwrap_or(per_weight * weights[i]));
             return round_down_but_last(shares, total);
         }
         for i in full {

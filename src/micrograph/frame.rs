@@ -102,7 +102,10 @@ fn caption(subject: &Subject, view: View) -> Vec<String> {
                 Some(ev) if ev != 0.0 => format!(", lamp {ev:+} EV"),
                 _ => String::new(),
             };
-            format!("transmitted light{mount}, aperture {:.2}{lamp}", m.objective)
+            format!(
+                "transmitted light{mount}, aperture {:.2}{lamp}",
+                m.objective
+            )
         }
         View::Section => "cross-section".to_owned(),
         View::Cutaway => "front quarter cut away".to_owned(),

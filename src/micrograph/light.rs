@@ -50,10 +50,11 @@ const FIELD: f64 = 0.88;
 /// How bright the brightest tenth of the fiber is made. Darker and brown cortex is black on a screen;
 /// brighter and its rim is white as the field.
 const LEGIBLE: f64 = 0.3;
-/// The lamp's range above the empty field. Beyond, hair is black: what comes through is stray light.
-const BRIGHTEST_EV: f64 = 5.0;
+/// The lamp's range above the empty field. Beyond, only stray light comes through: hair that is air
+/// from rim to rim stays dark.
+const BRIGHTEST_EV: f64 = 3.0;
 /// Light is metered at so many places along and across the fiber, with so many rays each.
-const METERED: [usize; 2] = [24, 16];
+const METERED: [usize; 2] = [24, 24];
 const METER_RAYS: u32 = 16;
 /// Events after which a photon is given up: what wanders this long in a medulla leaves in no
 /// particular direction, and the condenser's cone is a hundredth of all.
@@ -142,8 +143,8 @@ fn meter(mounted: &Mounted, fiber: &Fiber) -> f64 {
     let (period, [a, _]) = (fiber.period_um(), fiber.semi_axes_um());
     let [along, across] = METERED;
     let place = |i: usize| {
-        // Within the rim: that shows the mount, not the hair.
-        let x = 1.8 * ((i % across) as f64 + 0.5) / across as f64 - 0.9;
+        // The rim refracts into the mount rather than it absorbs.
+        let x = 0.97 * (2.0 * ((i % across) as f64 + 0.5) / across as f64 - 1.0);
         let z = period * ((i / across) as f64 + 0.5) / along as f64;
         (DVec3::new(a * x, 0.0, z), hash64(i as u64))
     };

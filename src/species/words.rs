@@ -1,9 +1,7 @@
 //! The model in words, for people who read rather than compute.
 
 use super::fields::{MEDULLAE, PATTERNS};
-use super::model::{
-    Continuity, HairClass, MedullaKind, PigmentBand, REFERENCE_RADIUS_UM, Station,
-};
+use super::model::{Continuity, HairClass, MedullaKind, PigmentBand, REFERENCE_RADIUS_UM, Station};
 use super::pattern::CuticlePattern;
 use super::shape::Choice;
 
@@ -62,7 +60,8 @@ impl HairClass {
     /// its scales (bakes of all built-in animals): what counts is the pigment times the thickness.
     pub fn color_word(&self, band: &PigmentBand) -> &'static str {
         let (dark, yellow) = (band.eumelanin, band.pheomelanin);
-        let is_lattice = |s: &Station| matches!(s.structure.medulla.kind, MedullaKind::Lattice { .. });
+        let is_lattice =
+            |s: &Station| matches!(s.structure.medulla.kind, MedullaKind::Lattice { .. });
         let keratin = match self.widest() {
             Some(station) if is_lattice(station) => KERATIN_OF_A_LATTICE,
             _ => 1.0,
@@ -81,7 +80,7 @@ impl HairClass {
         if share > YELLOW {
             of(
                 &[
-                    (0.01, "white"),
+                    (0.02, "white"),
                     (0.05, "cream"),
                     (0.15, "buff"),
                     (0.25, "tan"),
@@ -108,7 +107,7 @@ impl HairClass {
                     (0.2, "pale brown"),
                     (0.3, "gray-brown"),
                     (0.8, "brown"),
-                    (1.5, "dark brown"),
+                    (1.8, "dark brown"),
                 ],
                 "black-brown",
             )
@@ -141,7 +140,12 @@ mod tests {
 
     #[test]
     fn colors_of_known_hairs() {
-        let class = |id: &str| crate::species::load(id, &[]).unwrap().classes.swap_remove(0);
+        let class = |id: &str| {
+            crate::species::load(id, &[])
+                .unwrap()
+                .classes
+                .swap_remove(0)
+        };
         let human = class("human");
         let word = |eumelanin, pheomelanin| {
             human.color_word(&PigmentBand {
@@ -159,8 +163,8 @@ mod tests {
         assert_eq!(word(0.02, 0.8), "orange");
         assert_eq!(word(0.02, 1.6), "rust");
         for (id, words) in [
-            ("red-fox", &["black-brown", "orange", "dark gray"][..]),
-            ("wolf", &["black", "white", "black-brown", "white"]),
+            ("red-fox", &["black-brown", "orange", "brown"][..]),
+            ("wolf", &["black", "white", "black", "white"]),
             ("mink", &["dark brown"]),
             ("polar-bear", &["white"]),
         ] {
