@@ -28,6 +28,17 @@ impl AssemblyError {
     }
 }
 
+/// What a table of a station says of where it comes from, before it is baked.
+pub fn origin(species: &Species, class: &HairClass, station: &Station) -> Provenance {
+    Provenance {
+        species: species.id.clone(),
+        class: class.name.clone(),
+        station: station.at,
+        species_text: species.text.clone(),
+        ..Provenance::default()
+    }
+}
+
 /// Finds or bakes the table of one station; three of them where its materials differ by color.
 pub fn station_table(
     species: &Species,
@@ -38,17 +49,10 @@ pub fn station_table(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Baked<Undyed>, BakeError> {
-    let provenance = Provenance {
-        species: species.id.clone(),
-        class: class.name.clone(),
-        station: station.at,
-        species_text: species.text.clone(),
-        ..Provenance::default()
-    };
     find_or_bake(
         &station.structure,
         settings,
-        provenance,
+        origin(species, class, station),
         cache,
         progress,
         cancel,

@@ -25,6 +25,8 @@ pub trait Progress: Sync {
     fn begin(&self, stage: &str, total: u64, unit: &'static str);
     /// `count` more units are done.
     fn advance(&self, count: u64);
+    /// The length turns out to be another one: what ends the stage is not a count.
+    fn expect(&self, _total: u64) {}
     /// A short remark shown beside the bar, for instance the noise estimate.
     fn note(&self, remark: &str);
     /// The stage is over.

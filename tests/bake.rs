@@ -128,7 +128,7 @@ fn passes_and_pauses_do_not_matter() {
     assert_eq!(ended, Ended::Photons);
     assert!(passes > 2, "{passes}");
     assert!(bake.photons() == 300_001);
-    assert!(bake.snapshot(&Provenance::default()).unwrap() == Undyed::Gray(Box::new(whole)));
+    assert!(bake.snapshot().unwrap() == Undyed::Gray(Box::new(whole)));
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn a_stopped_bake_is_a_shorter_one() {
     };
     let bake = Bake::new(&cylinder(), &settings).unwrap();
     let cancel = Cancel::default();
-    assert!(bake.snapshot(&Provenance::default()).is_err());
+    assert!(bake.snapshot().is_err());
     // Polled from another thread while it runs.
     let polled = std::thread::scope(|scope| {
         let bake = &bake;
@@ -153,7 +153,7 @@ fn a_stopped_bake_is_a_shorter_one() {
         while bake.photons() == 0 {
             std::thread::sleep(Duration::from_millis(2));
         }
-        let polled = bake.snapshot(&Provenance::default()).unwrap();
+        let polled = bake.snapshot().unwrap();
         cancel.cancel();
         assert_eq!(flying.join().unwrap(), Ended::Cancelled);
         polled

@@ -3,7 +3,10 @@
 use crate::table::{StructureTable, TableError};
 use std::path::{Path, PathBuf};
 
-/// A folder of tables named by their content hash.
+/// Extension of files of sums.
+pub(super) const SUMS: &str = "safetensors";
+
+/// A folder of tables named by their content hash, and of sums that more photons can be added to.
 #[derive(Clone, Debug)]
 pub struct Cache {
     folder: PathBuf,
@@ -14,8 +17,20 @@ pub struct Cache {
 pub struct CacheSize {
     /// Number of tables.
     pub tables: u64,
-    /// Their size on disk.
+    /// Number of files of sums: bakes that can go on.
+    pub sums: u64,
+    /// The size of all on disk.
     pub bytes: u64,
+}
+
+impl CacheSize {
+    fn count(&mut self, path: &Path, bytes: u64) {
+        match path.extension().is_some_and(|e| e == SUMS) {
+            true => self.sums += 1,
+            false => self.tables += 1,
+        }
+        self.bytes += bytes;
+    }
 }
 
 impl Cache {
@@ -54,23 +69,26 @@ impl Cache {
         table.write(&self.path(&table.provenance.content))
     }
 
-    /// Counts the tables.
+    /// Where the sums of a bake are kept: see [`super::Bake::name`].
+    pub fn sums_path(&self, name: &str) -> PathBuf {
+        self.folder.join(format!("{name}.{SUMS}"))
+    }
+
+    /// Counts what is there.
     pub fn size(&self) -> CacheSize {
         let mut size = CacheSize::default();
-        for (_, bytes) in self.entries() {
-            size.tables += 1;
-            size.bytes += bytes;
+        for (path, bytes) in self.entries() {
+            size.count(&path, bytes);
         }
         size
     }
 
-    /// Removes all tables and says what was removed.
+    /// Removes all tables and sums and says what was removed.
     pub fn clear(&self) -> CacheSize {
         let mut removed = CacheSize::default();
         for (path, bytes) in self.entries() {
-            if std::fs::remove_file(path).is_ok() {
-                removed.tables += 1;
-                removed.bytes += bytes;
+            if std::fs::remove_file(&path).is_ok() {
+                removed.count(&path, bytes);
             }
         }
         removed
@@ -80,20 +98,20 @@ impl Cache {
         self.folder.join(format!("{content}.exr"))
     }
 
-    /// Paths and sizes of the tables; nothing else in the folder is looked at.
+    /// Paths and sizes of tables and sums; nothing else in the folder is looked at.
     fn entries(&self) -> Vec<(PathBuf, u64)> {
         let Ok(entries) = std::fs::read_dir(&self.folder) else {
             return Vec::new();
         };
-        let is_table = |path: &Path| {
+        let is_ours = |path: &Path| {
             let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or("");
-            path.extension().is_some_and(|e| e == "exr")
+            path.extension().is_some_and(|e| e == "exr" || e == SUMS)
                 && stem.len() == 64
                 && stem.bytes().all(|b| b.is_ascii_hexdigit())
         };
         entries
             .filter_map(Result::ok)
-            .filter(|entry| is_table(&entry.path()))
+            .filter(|entry| is_ours(&entry.path()))
             .map(|entry| (entry.path(), entry.metadata().map_or(0, |m| m.len())))
             .collect()
     }

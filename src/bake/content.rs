@@ -18,7 +18,8 @@ pub fn content_hash(structure: &Structure, settings: &Settings) -> String {
 
 /// Everything that decides the bits of a bake but its number of photons. Two bakes with equal
 /// recipes fly the same photons, one perhaps more of them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(transparent)]
 pub(super) struct Recipe(pub(super) Value);
 
 impl Recipe {

@@ -1,7 +1,9 @@
 //! The tables of a structure: from the cache, or baked and put there.
 
 use super::settings::check;
-use super::{Bake, BakeError, Baked, Cache, Ended, Goal, Settings, content_hash};
+use super::{
+    Bake, BakeError, Baked, Cache, Checkpoint, Ended, Found, Goal, Settings, content_hash, drive,
+};
 use crate::progress::{Cancel, Progress};
 use crate::species::Structure;
 use crate::table::{Provenance, StructureTable, Undyed};
@@ -10,8 +12,8 @@ use crate::table::{Provenance, StructureTable, Undyed};
 /// by color. Channels are baked with the same seed and photons each, so that they differ by what the
 /// materials do and not by noise.
 ///
-/// A stopped bake is returned but not kept. A cache that cannot be written to costs the next bake
-/// its time and is no error.
+/// Sums of a bake that was stopped are kept in the cache: the next one goes on from there. A cache that
+/// cannot be written to costs the next bake its time and is no error.
 pub fn find_or_bake(
     structure: &Structure,
     settings: &Settings,
@@ -27,20 +29,33 @@ pub fn find_or_bake(
             complete: true,
         });
     }
-    let bake = Bake::new(structure, settings)?;
-    let ended = bake.run(&Goal::default(), progress, cancel);
-    let table = bake.snapshot(&provenance)?;
+    let bake = Bake::new(structure, settings)?.with_origin(provenance, None);
+    let mut checkpoint =
+        cache.map(|cache| Checkpoint::in_cache(cache, &bake, Checkpoint::EVERY, false));
+    if let Some(Ok(Found::Beyond) | Err(_)) = checkpoint.as_mut().map(|c| c.resume(&bake)) {
+        checkpoint = None;
+    }
+    let ended = drive(
+        &bake,
+        &Goal::default(),
+        checkpoint.as_mut(),
+        progress,
+        cancel,
+        &mut |_, _| {},
+    );
+    let table = bake.snapshot()?;
     let complete = ended == Ended::Photons;
     if let (true, Some(cache)) = (complete, cache) {
-        for table in table.tables() {
-            let _ = cache.put(table);
+        let put = table.tables().iter().try_for_each(|table| cache.put(table));
+        if let (Ok(()), Some(checkpoint)) = (put, &mut checkpoint) {
+            let _ = checkpoint.finish(&bake);
         }
     }
     Ok(Baked { table, complete })
 }
 
 /// The tables of a structure if the cache has them all.
-fn find(
+pub fn find(
     structure: &Structure,
     settings: &Settings,
     provenance: &Provenance,

@@ -7,11 +7,14 @@
 
 mod boundary;
 mod cache;
+mod checkpoint;
 mod content;
+mod difference;
 mod entry;
 mod find;
 mod fork;
 mod goal;
+mod keep;
 mod microfacet;
 mod noise;
 mod pass;
@@ -19,17 +22,23 @@ mod photon;
 mod plan;
 mod progressive;
 mod settings;
+mod shard;
 mod shot;
+mod sums;
+mod sums_file;
 mod tally;
 
 pub use cache::{Cache, CacheSize};
+pub use checkpoint::{Checkpoint, Found, drive};
 pub use content::content_hash;
 pub use entry::{Photon, fly, fly_forked};
-pub use find::find_or_bake;
+pub use find::{find, find_or_bake};
 pub use goal::{Ended, Goal};
 pub use photon::{End, Flight, follow};
 pub use progressive::Bake;
 pub use settings::{BakeError, Settings, absorption_levels};
+pub use shard::Shard;
+pub use sums::{Sums, SumsError};
 
 use crate::fiber::Fiber;
 use crate::progress::{Cancel, Progress};
@@ -58,9 +67,9 @@ pub fn bake(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Baked, BakeError> {
-    let bake = Bake::of_fiber(fiber, settings)?;
+    let bake = Bake::of_fiber(fiber, settings)?.with_origin(provenance, None);
     let ended = bake.run(&Goal::default(), progress, cancel);
-    match bake.snapshot(&provenance)? {
+    match bake.snapshot()? {
         Undyed::Gray(table) => Ok(Baked {
             table: *table,
             complete: ended == Ended::Photons,

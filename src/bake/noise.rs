@@ -75,17 +75,19 @@ impl Norm {
 }
 
 impl Noise {
-    /// Of the nodes together.
-    pub(super) fn sum(parts: impl IntoIterator<Item = Self>) -> Self {
-        parts.into_iter().fold(Self::default(), |a, b| Self {
-            noise: a.noise + b.noise,
-            power: a.power + b.power,
-        })
+    /// Relative error of the worst channel.
+    pub(super) fn of_channels(parts: &[Self], nodes: usize) -> f64 {
+        let errors = parts.chunks(nodes).map(|channel| {
+            let noise = channel.iter().map(|part| part.noise).sum();
+            let power = channel.iter().map(|part| part.power).sum();
+            Self { noise, power }.relative()
+        });
+        errors.fold(0.0, f64::max)
     }
 
     /// Relative L2 error. What is seen is signal plus noise, so the noise is taken off what it is
     /// related to; infinite while nothing stands out of it.
-    pub(super) fn relative(self) -> f64 {
+    fn relative(self) -> f64 {
         let signal = self.power - self.noise;
         match signal > 0.0 {
             true => (self.noise / signal).sqrt(),
@@ -100,7 +102,7 @@ mod tests {
     use crate::bake::{Bake, Goal, Settings};
     use crate::fiber::Fiber;
     use crate::progress::{Cancel, Silent};
-    use crate::table::{Provenance, StructureTable, Undyed};
+    use crate::table::{StructureTable, Undyed};
 
     /// The error of two bakes with nothing in common is half of what lies between them.
     #[test]
@@ -118,7 +120,7 @@ mod tests {
                 };
                 let bake = Bake::of_fiber(&fiber, &settings).unwrap();
                 bake.run(&Goal::default(), &Silent, &Cancel::default());
-                match bake.snapshot(&Provenance::default()).unwrap() {
+                match bake.snapshot().unwrap() {
                     Undyed::Gray(table) => (bake.error(), table),
                     Undyed::Colored(_) => unreachable!("one fiber"),
                 }

@@ -52,6 +52,24 @@ impl Plan {
         Tally::new(texels, self.settings.levels.len())
     }
 
+    /// Bytes that a bake needs in any case and those that each thread adds: the sums and the pass
+    /// under way, the table and what becomes of it on its way into a file; a thread's own sums of a
+    /// node.
+    pub(super) fn memory(&self) -> (u64, u64) {
+        let Settings {
+            face, ref levels, ..
+        } = self.settings;
+        let values = Tally::shapes(face, levels.len())
+            .iter()
+            .map(|(_, shape)| shape.iter().map(|&n| n as u64).product::<u64>())
+            .sum::<u64>();
+        let table = 4 * 6 * (face * face * (levels.len() + 1)) as u64;
+        (
+            self.units() as u64 * (2 * 8 * values + 3 * table),
+            8 * values,
+        )
+    }
+
     /// The tables of `photons` photons that are summed up in `tallies`.
     ///
     /// # Errors

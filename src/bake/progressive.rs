@@ -1,13 +1,15 @@
 //! A bake that runs in passes and can be looked at while it does.
 
+use super::content::Recipe;
 use super::goal::{Ended, Goal, first_check, next_check};
 use super::noise::{Noise, Norm};
 use super::pass::{self, of_node};
 use super::plan::Plan;
 use super::settings::check;
 use super::shot::Shot;
+use super::sums_file::Header;
 use super::tally::Tally;
-use super::{BakeError, Settings};
+use super::{BakeError, Settings, Shard};
 use crate::fiber::Fiber;
 use crate::math::unicube::Unicube;
 use crate::progress::{Cancel, Progress};
@@ -15,7 +17,7 @@ use crate::species::Structure;
 use crate::table::{Nodes, Provenance, Undyed};
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::sync::{Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::time::Instant;
 
 /// Seconds that a pass aims for. Adding one to the sums takes some ten milliseconds: shorter and that
@@ -34,13 +36,15 @@ const GROWTH: f64 = 4.0;
 /// it has, not on passes, threads or pauses.
 pub struct Bake<'a> {
     fibers: Vec<Held<'a>>,
-    plan: Plan,
+    pub(super) header: Header,
+    /// Photons to be flown.
+    pub(super) range: Range<u64>,
     nodes: Nodes,
     cube: Unicube,
     norm: Norm,
     workers: Option<usize>,
     done: RwLock<Done>,
-    hand: Mutex<Hand>,
+    pub(super) hand: Mutex<Hand>,
 }
 
 /// A fiber of its own or one that is lent.
@@ -59,16 +63,16 @@ impl Held<'_> {
 }
 
 /// The sums of all whole passes.
-struct Done {
+pub(super) struct Done {
     /// Photons of the bake that are in the sums.
-    span: Range<u64>,
+    pub(super) span: Range<u64>,
     /// By channel and node.
-    tallies: Vec<Tally>,
+    pub(super) tallies: Vec<Tally>,
     error: f64,
 }
 
 /// What only the driving thread uses.
-struct Hand {
+pub(super) struct Hand {
     /// The pass under way, empty between passes.
     fresh: Vec<Mutex<Tally>>,
     /// Photons a second of the last pass.
@@ -76,7 +80,7 @@ struct Hand {
     /// Photons of the last pass.
     last: u64,
     /// Where the error is held against the goal next.
-    check: u64,
+    pub(super) check: u64,
 }
 
 impl Bake<'static> {
@@ -95,7 +99,7 @@ impl Bake<'static> {
         } else {
             vec![build(structure)?]
         };
-        Self::of(fibers, settings)
+        Self::of(fibers, Recipe::new(structure, settings), settings)
     }
 }
 
@@ -105,11 +109,12 @@ impl<'a> Bake<'a> {
     /// # Errors
     /// Settings out of range.
     pub fn of_fiber(fiber: &'a Fiber, settings: &Settings) -> Result<Self, BakeError> {
-        Self::of(vec![Held::Lent(fiber)], settings)
+        check(settings)?;
+        let recipe = Recipe::new(fiber.structure(), settings);
+        Self::of(vec![Held::Lent(fiber)], recipe, settings)
     }
 
-    fn of(fibers: Vec<Held<'a>>, settings: &Settings) -> Result<Self, BakeError> {
-        check(settings)?;
+    fn of(fibers: Vec<Held<'a>>, recipe: Recipe, settings: &Settings) -> Result<Self, BakeError> {
         let lent: Vec<&Fiber> = fibers.iter().map(Held::get).collect();
         let plan = Plan::new(&lent, settings);
         let cube = Unicube::new(settings.face);
@@ -129,10 +134,53 @@ impl<'a> Bake<'a> {
                 last: 0,
                 check: first_check(settings.bins),
             }),
+            header: Header::new(recipe, plan),
+            range: 0..settings.photons,
             fibers,
-            plan,
             cube,
         })
+    }
+
+    /// Only a part of the bake: [`Bake::save`] gives sums that [`super::Sums::merge`] puts together
+    /// with those of the other parts. Before the first pass.
+    pub fn with_shard(mut self, shard: Shard) -> Self {
+        self.range = shard.span(self.header.plan.settings.photons);
+        self.header.shards = shard.of;
+        let done = self.done.get_mut().unwrap_or_else(PoisonError::into_inner);
+        done.span = self.range.start..self.range.start;
+        self
+    }
+
+    /// What is known of the origin of the tables, and the absorption per micrometer that tables of
+    /// three channels are to be dyed with. Seed, events, program and content hash are filled in by
+    /// the bake.
+    pub fn with_origin(mut self, provenance: Provenance, dye: Option<[f64; 3]>) -> Self {
+        self.header.provenance = provenance;
+        self.header.dye = dye;
+        self
+    }
+
+    /// Keeps sums and tables within so many bytes by using fewer threads, which each need their own.
+    /// The fiber itself, some megabytes, does not count.
+    ///
+    /// # Errors
+    /// [`BakeError::Memory`] if one thread needs more.
+    pub fn with_memory(mut self, limit: u64) -> Result<Self, BakeError> {
+        let (fixed, each) = self.header.plan.memory();
+        let workers = limit.saturating_sub(fixed) / each;
+        if workers == 0 {
+            return Err(BakeError::Memory {
+                needed: fixed + each,
+                limit,
+            });
+        }
+        self.workers = Some(usize::try_from(workers).unwrap_or(usize::MAX));
+        Ok(self)
+    }
+
+    /// Photons to be flown, of each channel.
+    pub fn photons_wanted(&self) -> u64 {
+        self.range.end - self.range.start
     }
 
     /// Photons in the sums, of each channel.
@@ -148,17 +196,17 @@ impl<'a> Bake<'a> {
         self.done().error
     }
 
-    /// The table of what is done so far.
-    ///
-    /// * `provenance`: what is known of the table's origin; seed, events, program and content hash are
-    ///   filled in here. The content hash is that of a bake of so many photons.
+    /// The table of what is done so far. Its content hash is that of a bake of so many photons.
     ///
     /// # Errors
     /// [`BakeError::Stopped`] before the first pass is done.
-    pub fn snapshot(&self, provenance: &Provenance) -> Result<Undyed, BakeError> {
+    pub fn snapshot(&self) -> Result<Undyed, BakeError> {
         let done = self.done();
         let photons = done.span.end - done.span.start;
-        self.plan.tables(&done.tallies, photons, provenance)
+        let Header {
+            plan, provenance, ..
+        } = &self.header;
+        plan.tables(&done.tallies, photons, provenance)
     }
 
     /// Runs until the photons of the settings are flown, the goal is met or it is cancelled.
@@ -176,7 +224,7 @@ impl<'a> Bake<'a> {
     /// Opens the bake's stage of a progress report; [`Progress::finish`] is the caller's.
     pub fn begin(&self, progress: &dyn Progress) {
         let channels = self.fibers.len() as u64;
-        progress.begin("baking", self.plan.settings.photons * channels, "photons");
+        progress.begin("baking", self.photons_wanted() * channels, "photons");
         progress.advance(self.photons() * channels);
     }
 
@@ -185,7 +233,7 @@ impl<'a> Bake<'a> {
     ///
     /// On the threads of the rayon pool it is called from.
     pub fn refine(&self, goal: &Goal, progress: &dyn Progress, cancel: &Cancel) -> Option<Ended> {
-        let mut hand = self.hand.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut hand = lock(&self.hand);
         let (end, error) = (self.done().span.end, self.error());
         if let Some(goal) = goal.error
             && end >= hand.check
@@ -214,16 +262,54 @@ impl<'a> Bake<'a> {
         hand.pace = Some(count as f64 / start.elapsed().as_secs_f64().max(1e-9));
         hand.last = count;
         progress.note(&format!("error {:.2} %", 100.0 * error));
+        if let Some(photons) = self.forecast(&hand, span.end, error, goal) {
+            let channels = self.fibers.len() as u64;
+            progress.expect((photons - self.range.start) * channels);
+        }
         None
+    }
+
+    /// Where the bake will end if a goal comes before its last photon.
+    fn forecast(&self, hand: &Hand, end: u64, error: f64, goal: &Goal) -> Option<u64> {
+        let by_error = goal
+            .error
+            .map(|goal| (end - self.range.start) as f64 * (error / goal).powi(2));
+        let by_time = goal.until.zip(hand.pace).map(|(until, pace)| {
+            let left = until.saturating_duration_since(Instant::now());
+            (end - self.range.start) as f64 + pace * left.as_secs_f64()
+        });
+        let least = by_error.into_iter().chain(by_time).reduce(f64::min)?;
+        let forecast = self.range.start.saturating_add(least as u64);
+        Some(forecast.clamp(end, self.range.end))
+    }
+
+    /// Takes over the sums of a span.
+    pub(super) fn take_over(&self, span: Range<u64>, tallies: Vec<Tally>, check: u64) {
+        let mut hand = lock(&self.hand);
+        let mut done = self.done_mut();
+        let noise: Vec<Noise> = tallies
+            .par_iter()
+            .enumerate()
+            .map(|(unit, tally)| {
+                let node = unit % self.nodes.len();
+                self.norm.of(&self.cube, &self.nodes, node, tally)
+            })
+            .collect();
+        *done = Done {
+            span,
+            tallies,
+            error: Noise::of_channels(&noise, self.nodes.len()),
+        };
+        hand.check = check;
     }
 
     /// How many photons the next pass flies, or why there is none.
     fn next_pass(&self, hand: &Hand, end: u64, goal: &Goal) -> Result<u64, Ended> {
-        let left = self.plan.settings.photons.saturating_sub(end);
+        let left = self.range.end.saturating_sub(end);
         if left == 0 {
             return Err(Ended::Photons);
         }
-        let nodes = self.plan.settings.bins as u64;
+        let nodes = self.header.plan.settings.bins as u64;
         let mut count = match hand.pace {
             None => FIRST_PASS * nodes,
             Some(pace) => {
@@ -257,7 +343,7 @@ impl<'a> Bake<'a> {
             (0..self.nodes.len()).map(move |node| {
                 let shot = Shot {
                     fiber: fiber.get(),
-                    settings: &self.plan.settings,
+                    settings: &self.header.plan.settings,
                     nodes: &self.nodes,
                     cube: &self.cube,
                     node,
@@ -287,14 +373,11 @@ impl<'a> Bake<'a> {
             })
             .collect();
         done.span.end = span.end;
-        done.error = noise
-            .chunks(self.nodes.len())
-            .map(|channel| Noise::sum(channel.iter().copied()).relative())
-            .fold(0.0, f64::max);
+        done.error = Noise::of_channels(&noise, self.nodes.len());
         done.error
     }
 
-    fn done(&self) -> RwLockReadGuard<'_, Done> {
+    pub(super) fn done(&self) -> RwLockReadGuard<'_, Done> {
         self.done.read().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -303,11 +386,15 @@ impl<'a> Bake<'a> {
     }
 }
 
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 impl std::fmt::Debug for Bake<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let done = self.done();
         f.debug_struct("Bake")
-            .field("settings", &self.plan.settings)
+            .field("settings", &self.header.plan.settings)
             .field("span", &done.span)
             .field("error", &done.error)
             .finish_non_exhaustive()

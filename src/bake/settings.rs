@@ -41,6 +41,11 @@ impl Settings {
         }
     }
 
+    /// As many photons as the sums of so many nodes can hold.
+    pub fn most_photons(bins: usize) -> u64 {
+        MOST_A_NODE * bins as u64
+    }
+
     /// The default: the same storage and count in the cone frame, no light cut off.
     pub fn cone() -> Self {
         Self {
@@ -83,9 +88,20 @@ pub enum BakeError {
     /// The fiber cannot be built.
     #[error(transparent)]
     Fiber(#[from] FiberError),
-    /// Stopped before every direction had been covered once.
-    #[error("stopped before the first pass over all directions was complete; nothing was kept")]
+    /// Stopped before the table was complete, or before there was any.
+    #[error("stopped before the table was complete")]
     Stopped,
+    /// Sums and tables do not fit into the memory that is allowed.
+    #[error(
+        "a bake of these sizes needs {} MB on one thread; {} MB are allowed",
+        needed.div_ceil(1_000_000), limit / 1_000_000
+    )]
+    Memory {
+        /// Bytes needed on one thread.
+        needed: u64,
+        /// Bytes allowed.
+        limit: u64,
+    },
 }
 
 impl BakeError {
@@ -93,7 +109,7 @@ impl BakeError {
     pub fn blame(&self) -> Blame {
         match self {
             Self::Setting { .. } => Blame::Input,
-            Self::Fiber(_) => Blame::Input,
+            Self::Fiber(_) | Self::Memory { .. } => Blame::Input,
             Self::Stopped => Blame::Interrupted,
         }
     }
@@ -130,6 +146,13 @@ pub(super) fn check(settings: &Settings) -> Result<(), BakeError> {
             "photons",
             settings.photons.to_string(),
             "8 to 4294967295 a bin",
+        );
+    }
+    if !(1..=tally::MAX_LEVELS).contains(&settings.levels.len()) {
+        return refuse(
+            "number of levels",
+            settings.levels.len().to_string(),
+            "1 to 24",
         );
     }
     if !(1..=1_000_000).contains(&settings.max_events) {

@@ -61,20 +61,50 @@ impl Tally {
 
     /// Forgets everything.
     pub(super) fn clear(&mut self) {
-        for (_, sums) in self.arrays_mut() {
+        for sums in self.arrays_mut() {
             sums.fill(0);
         }
     }
 
-    /// All sums by name.
-    pub(super) fn arrays_mut(&mut self) -> [(&'static str, &mut [u64]); 6] {
+    /// Number of arrays in files.
+    pub(super) const ARRAYS: usize = 6;
+
+    /// Names and shapes of the arrays in files. A change of names or meaning wants a new version of
+    /// the file format.
+    ///
+    /// * `res`: texels along a face edge.
+    pub(super) fn shapes(res: usize, levels: usize) -> [(&'static str, Vec<usize>); Self::ARRAYS] {
         [
-            ("photons", std::slice::from_mut(&mut self.photons)),
-            ("absorbed", &mut self.absorbed[..self.levels]),
-            ("truncated", &mut self.truncated[..self.levels]),
-            ("lost", &mut self.lost[..self.levels]),
-            ("texels", &mut self.texels),
-            ("squares", &mut self.squares),
+            ("photons", vec![]),
+            ("absorbed", vec![levels]),
+            ("truncated", vec![levels]),
+            ("lost", vec![levels]),
+            ("texels", vec![6, res, res, levels]),
+            ("squares", vec![6, res, res]),
+        ]
+    }
+
+    /// All sums in the order of [`Tally::shapes`].
+    pub(super) fn arrays(&self) -> [&[u64]; Self::ARRAYS] {
+        [
+            std::slice::from_ref(&self.photons),
+            &self.absorbed[..self.levels],
+            &self.truncated[..self.levels],
+            &self.lost[..self.levels],
+            &self.texels,
+            &self.squares,
+        ]
+    }
+
+    /// [`Tally::arrays`] to be filled.
+    pub(super) fn arrays_mut(&mut self) -> [&mut [u64]; Self::ARRAYS] {
+        [
+            std::slice::from_mut(&mut self.photons),
+            &mut self.absorbed[..self.levels],
+            &mut self.truncated[..self.levels],
+            &mut self.lost[..self.levels],
+            &mut self.texels,
+            &mut self.squares,
         ]
     }
 

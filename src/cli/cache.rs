@@ -1,4 +1,4 @@
-//! `vair cache`: where baked tables are kept, how much there is, and away with it.
+//! `vair cache`: where baked tables and sums are kept, how much there is, and away with it.
 
 use super::stdout::print;
 use super::{Console, Failure};
@@ -14,9 +14,9 @@ pub(super) struct Args {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// Folder, number of tables and their size.
+    /// Folder, number of tables and of bakes that can go on, their size.
     Info,
-    /// Remove all tables.
+    /// Remove all of it.
     Clear,
 }
 
@@ -29,9 +29,10 @@ pub(super) fn run(args: &Args, _console: &Console) -> Result<(), Failure> {
     };
     let megabytes = size.bytes as f64 / 1e6;
     print(&format!(
-        "{} {what} {} tables, {megabytes:.1} MB\n",
+        "{} {what} {} tables and sums of {} bakes, {megabytes:.1} MB\n",
         cache.folder().display(),
-        size.tables
+        size.tables,
+        size.sums
     ))
 }
 

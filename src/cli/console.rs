@@ -78,6 +78,10 @@ impl Progress for Console {
         self.with_bar(|bar| bar.inc(count));
     }
 
+    fn expect(&self, total: u64) {
+        self.with_bar(|bar| bar.set_length(total));
+    }
+
     fn note(&self, remark: &str) {
         self.with_bar(|bar| bar.set_message(remark.to_owned()));
     }

@@ -59,6 +59,7 @@ macro_rules! failures {
 failures!(
     crate::assembly::AssemblyError,
     crate::bake::BakeError,
+    crate::bake::SumsError,
     crate::groom::GroomError,
     crate::io::FileError,
     crate::render::RenderError,

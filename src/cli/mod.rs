@@ -10,6 +10,7 @@ mod console;
 mod failure;
 mod fiber;
 mod gallery;
+mod merge;
 mod render;
 mod schema;
 mod signals;
@@ -43,6 +44,8 @@ enum Command {
     Fiber(fiber::Args),
     /// Trace photons through a fiber into a scattering table.
     Bake(bake::Args),
+    /// Put the shards of a bake together.
+    Merge(merge::Args),
     /// Render a still of a species: bakes what it needs, grows the fur, traces the picture.
     Render(render::Args),
     /// Look into scattering tables, dye them, draw them.
@@ -102,6 +105,7 @@ fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
         Command::Gallery(args) => gallery::run(&args, console),
         Command::Fiber(args) => fiber::run(&args, console),
         Command::Bake(args) => bake::run(&args, console),
+        Command::Merge(args) => merge::run(&args, console),
         Command::Cache(args) => cache::run(&args, console),
     }
 }

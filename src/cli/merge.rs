@@ -1,0 +1,62 @@
+//! `vair merge`: the shards of a bake put together, to the bit what one bake would have given.
+
+use super::bake::{report, write_table};
+use super::{Console, Failure};
+use crate::bake::{Sums, SumsError};
+use crate::blame::Blame;
+use crate::io::check_writable;
+use std::path::PathBuf;
+
+/// Arguments of `vair merge`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  vair bake human --photons 1e10 --shard 1/3 -o human-1.safetensors     # on three machines
+  vair merge human-1.safetensors human-2.safetensors human-3.safetensors -o human.exr
+  vair merge human-1.safetensors human-2.safetensors -o human-12.safetensors
+
+A table needs all photons of the bake; a .safetensors file takes what there is and can be merged
+further. The order of the files does not matter. Files of different bakes, with photons in common or
+with a gap between them are refused by name.")]
+pub(super) struct Args {
+    /// Files that `vair bake --shard` or `vair merge` wrote.
+    #[arg(required = true)]
+    shards: Vec<PathBuf>,
+    /// Where the result goes: a table (.exr) or the sums of a part (.safetensors).
+    #[arg(long, short)]
+    output: PathBuf,
+}
+
+/// Runs the command.
+pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
+    let extension = args.output.extension().and_then(|e| e.to_str());
+    let to_sums = match extension {
+        Some("safetensors") => true,
+        Some("exr") => false,
+        _ => {
+            let message = format!("{} is no kind of result", args.output.display());
+            let help = "end the name in .exr for a table, in .safetensors for sums";
+            return Err(Failure::with_help(Blame::Input, message, help));
+        }
+    };
+    check_writable(&args.output)?;
+    let sums = Sums::merge(&args.shards)?;
+    if to_sums {
+        sums.write(&args.output)?;
+        console.say(format!(
+            "{} of {} photons",
+            sums.photons(),
+            sums.photons_of_bake()
+        ));
+        return Ok(());
+    }
+    let table = sums.tables().map_err(|error| match error {
+        SumsError::Gap { .. } => {
+            let help = "merge with the missing shards, or into a .safetensors file";
+            Failure::with_help(error.blame(), error, help)
+        }
+        other => other.into(),
+    })?;
+    write_table(&table, sums.dye(), &args.output)?;
+    report(table.tables(), console);
+    Ok(())
+}
