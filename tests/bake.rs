@@ -107,6 +107,7 @@ fn same_bytes_for_any_number_of_threads() {
 fn passes_and_pauses_do_not_matter() {
     let settings = Settings {
         photons: 300_001,
+        face: 16,
         ..Settings::cone()
     };
     let whole = run(&cylinder(), &settings);

@@ -21,6 +21,7 @@ mod pass;
 mod photon;
 mod plan;
 mod progressive;
+mod refine;
 mod settings;
 mod shard;
 mod shot;

@@ -115,7 +115,7 @@ pub(super) fn write(path: &Path, header: &Header, tallies: &[Tally]) -> Result<(
     );
     let mut head = Value::Object(map).to_string();
     // The format wants arrays to begin at a multiple of their number's size.
-    while head.len() % 8 != 0 {
+    while !head.len().is_multiple_of(8) {
         head.push(' ');
     }
     let mut file = AtomicFile::create(path)?;

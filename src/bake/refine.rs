@@ -1,0 +1,172 @@
+//! The passes of a bake: how long, flown, added to the sums.
+
+use super::goal::{Ended, Goal, next_check};
+use super::noise::Noise;
+use super::pass::{self, of_node};
+use super::progressive::{Bake, Done, Hand, lock};
+use super::shot::Shot;
+use super::tally::Tally;
+use crate::progress::{Cancel, Progress};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::PoisonError;
+use std::time::Instant;
+
+/// Seconds that a pass aims for. Adding one to the sums takes some ten milliseconds: shorter and that
+/// is felt, longer and a cancelled pass throws away more.
+const PASS_SECONDS: f64 = 1.0;
+/// Photons a node of the first pass: enough for a rough table, a few hundredths of a second.
+const FIRST_PASS: u64 = 1024;
+/// A pass may be so many times as long as the one before, whose speed it is planned with.
+const GROWTH: f64 = 4.0;
+
+impl Bake<'_> {
+    /// One pass: about a second, less at first. `None` if there is more to do. A cancelled pass
+    /// leaves nothing behind.
+    ///
+    /// On the threads of the rayon pool it is called from.
+    pub fn refine(&self, goal: &Goal, progress: &dyn Progress, cancel: &Cancel) -> Option<Ended> {
+        let mut hand = lock(&self.hand);
+        let (end, error) = (self.done().span.end, self.error());
+        if let Some(goal) = goal.error
+            && end >= hand.check
+        {
+            if error <= goal {
+                return Some(Ended::Error);
+            }
+            hand.check = next_check(end, error, goal);
+        }
+        let count = match self.next_pass(&hand, end, goal) {
+            Ok(count) => count,
+            Err(ended) => return Some(ended),
+        };
+        let span = end..end + count;
+        let start = Instant::now();
+        if !self.fly(&span, &hand, progress, cancel) {
+            hand.fresh.par_iter_mut().for_each(|tally| {
+                tally
+                    .get_mut()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .clear();
+            });
+            return Some(Ended::Cancelled);
+        }
+        let error = self.add(&span, &mut hand);
+        hand.pace = Some(count as f64 / start.elapsed().as_secs_f64().max(1e-9));
+        hand.last = count;
+        progress.note(&format!("error {:.2} %", 100.0 * error));
+        if let Some(photons) = self.forecast(&hand, span.end, error, goal) {
+            let channels = self.fibers.len() as u64;
+            progress.expect((photons - self.range.start) * channels);
+        }
+        None
+    }
+
+    /// Where the bake will end if a goal comes before its last photon.
+    fn forecast(&self, hand: &Hand, end: u64, error: f64, goal: &Goal) -> Option<u64> {
+        let by_error = goal
+            .error
+            .map(|goal| (end - self.range.start) as f64 * (error / goal).powi(2));
+        let by_time = goal.until.zip(hand.pace).map(|(until, pace)| {
+            let left = until.saturating_duration_since(Instant::now());
+            (end - self.range.start) as f64 + pace * left.as_secs_f64()
+        });
+        let least = by_error.into_iter().chain(by_time).reduce(f64::min)?;
+        let forecast = self.range.start.saturating_add(least as u64);
+        Some(forecast.clamp(end, self.range.end))
+    }
+
+    /// Takes over the sums of a span.
+    pub(super) fn take_over(&self, span: Range<u64>, tallies: Vec<Tally>, check: u64) {
+        let mut hand = lock(&self.hand);
+        let mut done = self.done_mut();
+        let noise: Vec<Noise> = tallies
+            .par_iter()
+            .enumerate()
+            .map(|(unit, tally)| {
+                let node = unit % self.nodes.len();
+                self.norm.of(&self.cube, &self.nodes, node, tally)
+            })
+            .collect();
+        *done = Done {
+            span,
+            tallies,
+            error: Noise::of_channels(&noise, self.nodes.len()),
+        };
+        hand.check = check;
+    }
+
+    /// How many photons the next pass flies, or why there is none.
+    fn next_pass(&self, hand: &Hand, end: u64, goal: &Goal) -> Result<u64, Ended> {
+        let left = self.range.end.saturating_sub(end);
+        if left == 0 {
+            return Err(Ended::Photons);
+        }
+        let nodes = self.header.plan.settings.bins as u64;
+        let mut count = match hand.pace {
+            None => FIRST_PASS * nodes,
+            Some(pace) => {
+                let mut seconds = PASS_SECONDS;
+                if let Some(until) = goal.until {
+                    let remaining = until.saturating_duration_since(Instant::now());
+                    seconds = seconds.min(remaining.as_secs_f64());
+                }
+                let count = (pace * seconds).min(hand.last as f64 * GROWTH) as u64;
+                // A pass of fewer than a few photons a node is not worth its addition.
+                if goal.until.is_some() && count < 16 * nodes {
+                    return Err(Ended::Time);
+                }
+                count.max(nodes)
+            }
+        };
+        if goal.error.is_some() && end < hand.check {
+            count = count.min(hand.check - end);
+        }
+        Ok(count.min(left))
+    }
+
+    fn fly(
+        &self,
+        span: &Range<u64>,
+        hand: &Hand,
+        progress: &dyn Progress,
+        cancel: &Cancel,
+    ) -> bool {
+        let shots = self.fibers.iter().flat_map(|fiber| {
+            (0..self.nodes.len()).map(move |node| {
+                let shot = Shot {
+                    fiber: fiber.get(),
+                    settings: &self.header.plan.settings,
+                    nodes: &self.nodes,
+                    cube: &self.cube,
+                    node,
+                };
+                (shot, of_node(span, self.nodes.len(), node))
+            })
+        });
+        let workers = rayon::current_num_threads();
+        let workers = self.workers.map_or(workers, |most| workers.min(most));
+        pass::fly(shots.collect(), &hand.fresh, workers, progress, cancel)
+    }
+
+    /// Adds the pass to the sums and says how noisy they are now.
+    fn add(&self, span: &Range<u64>, hand: &mut Hand) -> f64 {
+        let mut done = self.done_mut();
+        let noise: Vec<Noise> = done
+            .tallies
+            .par_iter_mut()
+            .zip(&mut hand.fresh)
+            .enumerate()
+            .map(|(unit, (sum, fresh))| {
+                let fresh = fresh.get_mut().unwrap_or_else(PoisonError::into_inner);
+                sum.add(fresh);
+                fresh.clear();
+                let node = unit % self.nodes.len();
+                self.norm.of(&self.cube, &self.nodes, node, sum)
+            })
+            .collect();
+        done.span.end = span.end;
+        done.error = Noise::of_channels(&noise, self.nodes.len());
+        done.error
+    }
+}
