@@ -5,10 +5,10 @@ use super::microfacet::{Ratio, Turn};
 use super::photon::follow_from;
 use super::{End, Flight, follow};
 use crate::fiber::{Fiber, Hit, Optics, Region};
+use crate::math::turn::unit_vector;
 use crate::sampling::Rng;
 use crate::table::PHOTON;
 use glam::{DVec2, DVec3};
-use std::f64::consts::TAU;
 
 /// The identity of a photon and the range of directions it comes from.
 #[derive(Clone, Copy, Debug)]
@@ -98,7 +98,7 @@ impl Entry {
         let (lo, hi) = photon.sin_range;
         let sin = lo + (hi - lo) * along;
         let cos = (1.0 - sin * sin).max(0.0).sqrt();
-        let turn = DVec2::from_angle(TAU * rng.uniform());
+        let turn = unit_vector(rng.uniform());
         let dir = rotate(DVec3::new(-cos, 0.0, -sin), turn);
         let radius = fiber.bounding_radius_um();
         let mut h = 2.0 * across - 1.0;

@@ -6,9 +6,9 @@
 //! 2023).
 
 use crate::math::fresnel;
+use crate::math::turn::unit_vector;
 use crate::sampling::Rng;
 use glam::DVec3;
-use std::f64::consts::TAU;
 
 /// Where a photon goes at a boundary.
 #[derive(Clone, Copy, Debug)]
@@ -88,9 +88,8 @@ pub(super) fn walk(
         // Below the surface the same walk runs upside down.
         let up = if above { d } else { -d };
         let Some(met) = depth.free(up, alpha, rng.uniform()) else {
-            let dir = fresnel::renormalize(d.x * tangent + d.y * bitangent + d.z * n);
             return Some(Turn {
-                dir,
+                dir: d.x * tangent + d.y * bitangent + d.z * n,
                 transmitted: !above,
             });
         };
@@ -114,28 +113,56 @@ const TOP: f64 = 0.999;
 const MAX_STEPS: usize = 256;
 
 /// How deep in the microsurface a walk is: the share of the surface that lies below (behind, once
-/// it is upside down), `top * base^exponent` or one minus that. Nearly all walks are decided by
-/// bounds of the power (Bernoulli's inequality); it is computed only for the others.
+/// it is upside down), `top * base^exponent` or one minus that, where the exponent is `-1 / Lambda` of
+/// the ray that came down. Nearly all walks are decided by bounds of powers (Bernoulli's inequality)
+/// and of Lambda; roots and powers are computed only for the others.
 #[derive(Clone, Copy)]
 struct Depth {
     top: f64,
     base: f64,
-    /// In 0..=1.
-    exponent: f64,
+    slope: Slope,
     flipped: bool,
 }
 
+/// Square of the tangent of a ray's angle to the normal times that of the roughness, as a fraction.
+#[derive(Clone, Copy)]
+struct Slope {
+    across: f64,
+    along: f64,
+}
+
+impl Slope {
+    #[inline]
+    fn new(d: DVec3, alpha: f64) -> Self {
+        Self {
+            across: alpha * alpha * (d.x * d.x + d.y * d.y),
+            along: d.z * d.z,
+        }
+    }
+
+    /// Smith's Lambda of GGX for a ray that goes up; for one that goes down it is `-1 - lambda`.
+    #[inline]
+    fn lambda(self) -> f64 {
+        0.5 * ((1.0 + self.across / self.along).sqrt() - 1.0)
+    }
+}
+
 impl Depth {
+    #[inline]
     fn from_share(share: f64) -> Self {
         Self {
             top: share,
             base: 1.0,
-            exponent: 1.0,
+            slope: Slope {
+                across: 0.0,
+                along: 1.0,
+            },
             flipped: false,
         }
     }
 
     /// The same place seen from the other side of the surface.
+    #[inline]
     fn turned(self) -> Self {
         Self {
             flipped: !self.flipped,
@@ -144,74 +171,86 @@ impl Depth {
     }
 
     /// The share below.
+    #[cold]
     fn share(self) -> f64 {
-        let share = self.top * self.base.powf(self.exponent);
+        let share = self.top * self.base.powf(1.0 / (1.0 + self.slope.lambda()));
         if self.flipped { 1.0 - share } else { share }
     }
 
     /// No more than the share below.
+    #[inline]
     fn least_share(self) -> f64 {
         if self.flipped {
-            1.0 - self.top * (1.0 - self.exponent * (1.0 - self.base))
+            // Lambda is at most a quarter of the slope.
+            let Slope { across, along } = self.slope;
+            let exponent = 4.0 * along / (4.0 * along + across);
+            1.0 - self.top * (1.0 - exponent * (1.0 - self.base))
         } else {
             self.top * self.base
         }
     }
 
     /// Where a ray on the microsurface meets it next; `None` if it gets away. `u`: uniform in 0..1.
+    #[inline]
     fn free(self, d: DVec3, alpha: f64, u: f64) -> Option<Self> {
         if d.z > 0.9999 {
             return None;
         }
         if d.z < -0.9999 {
-            return Some(Self::from_share(u * self.share()));
+            return Some(Self::from_share(u * self.whole_share()));
         }
         if d.z.abs() < 1e-4 {
             return Some(self);
         }
-        let lambda = lambda(d, alpha);
+        let slope = Slope::new(d, alpha);
         if d.z > 0.0 {
             // It escapes if 1 - u < share^lambda, which is at least 1 - lambda (1 / share - 1).
             let least = self.least_share();
-            if u * least > lambda * (1.0 - least) {
+            if 4.0 * slope.along * u * least > slope.across * (1.0 - least) {
                 return None;
             }
-            let share = self.share();
-            if 1.0 - u < share.powf(lambda) {
-                return None;
-            }
-            return Some(Self::from_share(
-                (share / (1.0 - u).powf(1.0 / lambda)).min(1.0),
-            ));
+            return self.free_by_power(slope.lambda(), u);
         }
-        // Downward lambda is -1 or less: a power with an exponent between 0 and 1.
+        // Downward -1 / Lambda is an exponent between 0 and 1.
         Some(Self {
-            top: if self.base == 1.0 && !self.flipped {
-                self.top
-            } else {
-                self.share()
-            },
+            top: self.whole_share(),
             base: 1.0 - u,
-            exponent: -1.0 / lambda,
+            slope,
             flipped: false,
         })
     }
-}
 
-/// Smith's Lambda of GGX; negative for directions that point down. `d.z` is not 0.
-#[inline]
-fn lambda(d: DVec3, alpha: f64) -> f64 {
-    let slope2 = alpha * alpha * (d.x * d.x + d.y * d.y) / (d.z * d.z);
-    0.5 * ((1.0 + slope2).sqrt().copysign(d.z) - 1.0)
+    /// The share below, which is a plain number where a walk starts.
+    #[inline]
+    fn whole_share(self) -> f64 {
+        if self.base == 1.0 && !self.flipped {
+            self.top
+        } else {
+            self.share()
+        }
+    }
+
+    /// [`Depth::free`] upward where bounds do not decide.
+    #[cold]
+    fn free_by_power(self, lambda: f64, u: f64) -> Option<Self> {
+        let share = self.share();
+        if 1.0 - u < share.powf(lambda) {
+            return None;
+        }
+        Some(Self::from_share(
+            (share / (1.0 - u).powf(1.0 / lambda)).min(1.0),
+        ))
+    }
 }
 
 /// A microfacet normal visible from `w` (which may point below the horizon).
+#[inline]
 fn visible_normal(w: DVec3, alpha: f64, rng: &mut Rng) -> DVec3 {
     let v = DVec3::new(alpha * w.x, alpha * w.y, w.z).normalize();
-    let (sin_phi, cos_phi) = (TAU * rng.uniform()).sin_cos();
+    let around = unit_vector(rng.uniform());
     let z = (1.0 - rng.uniform()) * (1.0 + v.z) - v.z;
     let r = (1.0 - z * z).max(0.0).sqrt();
-    let h = DVec3::new(r * cos_phi, r * sin_phi, z) + v;
+    let h = DVec3::new(r * around.x, r * around.y, z) + v;
     DVec3::new(alpha * h.x, alpha * h.y, h.z.max(1e-9)).normalize()
 }
 

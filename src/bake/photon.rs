@@ -3,9 +3,9 @@
 use super::boundary;
 use super::microfacet::{self, Turn};
 use crate::fiber::{Fiber, Hit, Medium, Optics, Region};
+use crate::math::turn::unit_vector;
 use crate::sampling::Rng;
 use glam::DVec3;
-use std::f64::consts::TAU;
 
 /// How a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -186,9 +186,9 @@ fn henyey_greenstein(dir: DVec3, g: f64, rng: &mut Rng) -> DVec3 {
         ((1.0 + g * g - s * s) / (2.0 * g)).clamp(-1.0, 1.0)
     };
     let sin = (1.0 - cos * cos).max(0.0).sqrt();
-    let (sin_phi, cos_phi) = (TAU * rng.uniform()).sin_cos();
+    let around = unit_vector(rng.uniform());
     let (a, b) = dir.any_orthonormal_pair();
-    (sin * cos_phi * a + sin * sin_phi * b + cos * dir).normalize()
+    (sin * around.x * a + sin * around.y * b + cos * dir).normalize()
 }
 
 #[cfg(test)]

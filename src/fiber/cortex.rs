@@ -1,11 +1,12 @@
 //! Pigment along a ray through keratin: leaning toward the medulla or the cuticle, absent under a
 //! clear rim, in streaks along the axis, denser or rarer in the medulla's walls.
 
+mod streaks;
+
 use super::medulla::Pieces;
-use super::section::{UnitRay, floor};
-use crate::sampling::{Rng, hash64};
+use super::section::UnitRay;
 use crate::species::Structure;
-use glam::DVec3;
+use streaks::Streaks;
 
 /// Where the pigment lies. Its mean over the cortex is 1.
 #[derive(Clone, Debug)]
@@ -27,22 +28,6 @@ struct Lean {
     rim: f64,
 }
 
-/// Density in cells that are slender along z: a log-normal number a cell.
-#[derive(Clone, Debug)]
-struct Streaks {
-    /// Micrometers in the unit-circle frame's units across.
-    scale: [f64; 2],
-    period: f64,
-    seed: u64,
-    /// Draws of the log-normal distribution, their mean 1.
-    levels: [f64; 256],
-}
-
-/// Width of a streak, micrometers: some granules side by side.
-const STREAK_UM: f64 = 1.5;
-/// Mean length of a streak, micrometers; reported as dots and dashes of 10 to 40.
-const STREAK_LENGTH_UM: f64 = 25.0;
-
 impl Pigment {
     /// * `semi`: semi-axes of the section, micrometers; `radii`: of its outline, in their units.
     /// * `ratio`: radius of the medulla, 0 for none.
@@ -55,12 +40,13 @@ impl Pigment {
     ) -> Self {
         let cortex = &structure.cortex;
         let even = cortex.toward_medulla == 0.0 && cortex.clear_rim == 0.0;
+        let reach = radii.iter().fold(0.0, |m: f64, &r| m.max(r));
         Self {
             ratio,
             walls: structure.medulla.pigment,
             lean: (!even).then(|| Lean::new(cortex.toward_medulla, cortex.clear_rim, ratio, radii)),
             streaks: (cortex.streaks > 0.0)
-                .then(|| Box::new(Streaks::new(cortex.streaks, semi, period, seed))),
+                .then(|| Box::new(Streaks::new(cortex.streaks, semi, reach, period, seed))),
         }
     }
 
@@ -121,7 +107,10 @@ impl Pigment {
             })
         };
         // Where the medulla would be the density is that beside it.
-        let density = |lean: &Lean, p: DVec3| lean.density(p.x.hypot(p.y).max(self.ratio));
+        let density = |lean: &Lean, t: f64| {
+            let rho2 = ray.c + t * (2.0 * ray.b + t * ray.a);
+            lean.density(rho2.max(self.ratio * self.ratio).sqrt())
+        };
         match (&self.streaks, &self.lean) {
             (None, None) => (t1 - t0) * outside(t0, t1),
             (None, Some(lean)) if pieces.is_some() => {
@@ -138,8 +127,8 @@ impl Pigment {
                 }
                 let (t0, t1) = within;
                 streaks.walk(ray, t0, t1, |streak, t0, t1| {
-                    let p = ray.at(0.5 * (t0 + t1));
-                    let at = lean.as_ref().map_or(1.0, |lean| density(lean, p));
+                    let middle = 0.5 * (t0 + t1);
+                    let at = lean.as_ref().map_or(1.0, |lean| density(lean, middle));
                     sum += streak * at * (t1 - t0) * outside(t0, t1);
                 });
                 sum
@@ -213,95 +202,6 @@ impl Lean {
         };
         let radius = 0.5 * (s1 * rho1 - s0 * rho0 + log) / root;
         flat - self.rise * radius
-    }
-}
-
-impl Streaks {
-    fn new(sigma: f64, semi: [f64; 2], period: f64, seed: u64) -> Self {
-        let mut levels = [0.0; 256];
-        for (k, level) in levels.iter_mut().enumerate() {
-            let (normal, _) = Rng::new(seed ^ 0x57ea_0000, k as u64).normal_pair();
-            *level = (sigma * normal).exp();
-        }
-        let mean = levels.iter().sum::<f64>() / levels.len() as f64;
-        Self {
-            scale: semi,
-            period,
-            seed: hash64(seed ^ 0x57ea_4c00),
-            levels: levels.map(|l| l / mean),
-        }
-    }
-
-    /// Visits the cells along a ray: density, begin and end.
-    fn walk(&self, ray: &UnitRay, t0: f64, t1: f64, mut visit: impl FnMut(f64, f64, f64)) {
-        let rate = [
-            ray.dx * self.scale[0] / STREAK_UM,
-            ray.dy * self.scale[1] / STREAK_UM,
-        ];
-        let at = [
-            ray.x * self.scale[0] / STREAK_UM,
-            ray.y * self.scale[1] / STREAK_UM,
-        ];
-        let (mut cell, mut next, mut delta) = ([0.0; 2], [f64::INFINITY; 2], [f64::INFINITY; 2]);
-        for k in 0..2 {
-            cell[k] = floor(at[k] + t0 * rate[k]);
-            if rate[k] != 0.0 {
-                let edge = cell[k] + f64::from(u8::from(rate[k] > 0.0));
-                next[k] = (edge - at[k]) / rate[k];
-                delta[k] = 1.0 / rate[k].abs();
-            }
-        }
-        let mut t = t0;
-        while t < t1 {
-            let axis = usize::from(next[1] < next[0]);
-            let end = next[axis].min(t1);
-            if end > t {
-                self.column(cell, ray, t, end, &mut visit);
-                t = end;
-            }
-            cell[axis] += rate[axis].signum();
-            next[axis] += delta[axis];
-        }
-    }
-
-    /// The streaks of one column, whose ends lie at heights of its own.
-    fn column(
-        &self,
-        cell: [f64; 2],
-        ray: &UnitRay,
-        t0: f64,
-        t1: f64,
-        visit: &mut impl FnMut(f64, f64, f64),
-    ) {
-        let key = hash64(self.seed ^ (cell[0] as i64 as u64) ^ ((cell[1] as i64 as u64) << 32));
-        let count = (self.period / STREAK_LENGTH_UM).round().max(1.0);
-        let length = self.period / count;
-        let phase = (key >> 40) as f64 / f64::from(1u32 << 24);
-        let level = |z: f64| {
-            let k = floor(z / length + phase);
-            let k = k - count * floor(k / count);
-            self.levels[(hash64(key ^ k as u64) & 255) as usize]
-        };
-        let mut t = t0;
-        if ray.dz != 0.0 {
-            let at = |t: f64| (ray.z + t * ray.dz) / length + phase;
-            let up = ray.dz > 0.0;
-            let mut edge = floor(at(t)) + f64::from(u8::from(up));
-            loop {
-                let end = ((edge - phase) * length - ray.z) / ray.dz;
-                if end >= t1 {
-                    break;
-                }
-                if end > t {
-                    visit(level(ray.z + 0.5 * (t + end) * ray.dz), t, end);
-                    t = end;
-                }
-                edge += if up { 1.0 } else { -1.0 };
-            }
-        }
-        if t1 > t {
-            visit(level(ray.z + 0.5 * (t + t1) * ray.dz), t, t1);
-        }
     }
 }
 

@@ -1,5 +1,6 @@
-//! Frames, the unicube map and Fresnel equations.
+//! Frames, turns, the unicube map and Fresnel equations.
 
 pub mod frame;
 pub mod fresnel;
+pub mod turn;
 pub mod unicube;

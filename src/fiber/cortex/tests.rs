@@ -3,7 +3,9 @@
 use super::*;
 use crate::fiber::section::Section;
 use crate::math::frame::direction;
+use crate::sampling::Rng;
 use crate::species::{Cortex, Medulla, MedullaKind};
+use glam::DVec3;
 
 const RATIO: f64 = 0.4;
 

@@ -1,0 +1,178 @@
+//! Pigment in streaks: cells slender along the axis, each with a density of its own.
+
+use crate::fiber::section::{UnitRay, floor};
+use crate::sampling::{Rng, hash64};
+
+/// Width of a streak, micrometers: some granules side by side.
+const STREAK_UM: f64 = 1.5;
+/// Mean length of a streak, micrometers; reported as dots and dashes of 10 to 40.
+const STREAK_LENGTH_UM: f64 = 25.0;
+
+/// Density in cells that are slender along z: a log-normal number a cell, drawn beforehand, for a ray
+/// passes dozens. Cells stand in square columns; in each they begin at a height of its own.
+#[derive(Clone, Debug)]
+pub(super) struct Streaks {
+    /// Columns per unit of the unit-circle frame.
+    scale: [f64; 2],
+    /// Columns along x and y.
+    size: [i32; 2],
+    /// Cells of a column in one period, and their number per micrometer.
+    count: i32,
+    per_um: f64,
+    /// Where the cells of each column begin, in cells.
+    phases: Vec<f32>,
+    /// Density of each cell, column by column; their mean is 1.
+    densities: Vec<f32>,
+}
+
+impl Streaks {
+    /// * `sigma`: standard deviation of the density's logarithm.
+    /// * `semi`: semi-axes of the section, micrometers; `reach`: its largest radius in their units.
+    pub(super) fn new(sigma: f64, semi: [f64; 2], reach: f64, period: f64, seed: u64) -> Self {
+        let mut levels = [0.0; 256];
+        for (k, level) in levels.iter_mut().enumerate() {
+            let (normal, _) = Rng::new(seed ^ 0x57ea_0000, k as u64).normal_pair();
+            *level = (sigma * normal).exp();
+        }
+        let mean = levels.iter().sum::<f64>() / levels.len() as f64;
+
+        let seed = hash64(seed ^ 0x57ea_4c00);
+        let scale = semi.map(|s| s / STREAK_UM);
+        let half = scale.map(|s| (s * reach) as i32 + 1);
+        let count = (period / STREAK_LENGTH_UM).round().max(1.0) as i32;
+        let (mut phases, mut densities) = (Vec::new(), Vec::new());
+        for y in -half[1]..half[1] {
+            for x in -half[0]..half[0] {
+                let key = hash64(seed ^ i64::from(x) as u64 ^ ((i64::from(y) as u64) << 32));
+                phases.push((key >> 40) as f32 / (1u32 << 24) as f32);
+                densities.extend((0..count).map(|k| {
+                    let draw = hash64(key ^ i64::from(k) as u64) & 255;
+                    (levels[draw as usize] / mean) as f32
+                }));
+            }
+        }
+        Self {
+            scale,
+            size: half.map(|h| 2 * h),
+            count,
+            per_um: f64::from(count) / period,
+            phases,
+            densities,
+        }
+    }
+
+    /// Visits the cells along a ray: density, begin and end.
+    pub(super) fn walk(
+        &self,
+        ray: &UnitRay,
+        t0: f64,
+        t1: f64,
+        mut visit: impl FnMut(f64, f64, f64),
+    ) {
+        let rate = [ray.dx * self.scale[0], ray.dy * self.scale[1]];
+        let at = [ray.x * self.scale[0], ray.y * self.scale[1]];
+        let mut columns = [0, 1].map(|k| Axis::new(at[k], rate[k], t0, self.size[k]));
+        let axial = Axial::new(self, ray);
+        let mut t = t0;
+        while t < t1 {
+            let axis = usize::from(columns[1].next < columns[0].next);
+            let end = columns[axis].next.min(t1);
+            if end > t {
+                let column = columns[1].index() * self.size[0] + columns[0].index();
+                axial.walk(column as usize, t, end, &mut visit);
+                t = end;
+            }
+            columns[axis].advance();
+        }
+    }
+}
+
+/// A ray's way through the columns along one axis.
+struct Axis {
+    cell: i32,
+    last: i32,
+    step: i32,
+    /// Where the ray leaves the cell, and the way between two such places.
+    next: f64,
+    delta: f64,
+}
+
+impl Axis {
+    #[inline]
+    fn new(at: f64, rate: f64, t0: f64, size: i32) -> Self {
+        let cell = floor(at + t0 * rate);
+        let (mut next, mut delta) = (f64::INFINITY, f64::INFINITY);
+        if rate != 0.0 {
+            let inverse = 1.0 / rate;
+            next = (cell + f64::from(u8::from(rate > 0.0)) - at) * inverse;
+            delta = inverse.abs();
+        }
+        Self {
+            cell: cell as i32 + size / 2,
+            last: size - 1,
+            step: if rate > 0.0 { 1 } else { -1 },
+            next,
+            delta,
+        }
+    }
+
+    /// Scales may stand out a little over the outermost columns: there these go on.
+    #[inline]
+    fn index(&self) -> i32 {
+        self.cell.clamp(0, self.last)
+    }
+
+    #[inline]
+    fn advance(&mut self) {
+        self.cell += self.step;
+        self.next += self.delta;
+    }
+}
+
+/// A ray's height in cells: `z + t dz`.
+struct Axial<'a> {
+    streaks: &'a Streaks,
+    z: f64,
+    dz: f64,
+}
+
+impl<'a> Axial<'a> {
+    #[inline]
+    fn new(streaks: &'a Streaks, ray: &UnitRay) -> Self {
+        let (z, count) = (ray.z * streaks.per_um, f64::from(streaks.count));
+        Self {
+            streaks,
+            // Within the first period, where most of the way then is.
+            z: z - count * floor(z / count),
+            dz: ray.dz * streaks.per_um,
+        }
+    }
+
+    #[inline]
+    fn walk(&self, column: usize, t0: f64, t1: f64, visit: &mut impl FnMut(f64, f64, f64)) {
+        let z = self.z + f64::from(self.streaks.phases[column]);
+        let (mut k, last) = (floor(z + t0 * self.dz), floor(z + t1 * self.dz));
+        let mut t = t0;
+        // Rarely more than one cell: columns are slender.
+        while k != last {
+            let (edge, next) = if last > k {
+                (k + 1.0, k + 1.0)
+            } else {
+                (k, k - 1.0)
+            };
+            let end = ((edge - z) / self.dz).clamp(t, t1);
+            visit(self.density(column, k), t, end);
+            (t, k) = (end, next);
+        }
+        visit(self.density(column, k), t, t1);
+    }
+
+    #[inline]
+    fn density(&self, column: usize, k: f64) -> f64 {
+        let (mut k, count) = (k as i32, self.streaks.count);
+        if k < 0 || k >= count {
+            k = k.rem_euclid(count);
+        }
+        f64::from(self.streaks.densities[column * count as usize + k as usize])
+    }
+}
