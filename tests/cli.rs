@@ -257,3 +257,26 @@ fn same_bytes_on_any_number_of_threads_and_in_a_crop() {
     }
     assert!(bytes("t1.exr") == bytes("t2.exr") && bytes("t1.exr") == bytes("t7.exr"));
 }
+
+/// What was mended in a mesh is said when it is baked, not only when it is looked at.
+#[test]
+fn baking_a_mended_mesh_says_what_was_mended() {
+    let mut prism = "o cuticle\n".to_owned();
+    for z in [0, 100] {
+        for (x, y) in [(40, 0), (0, 40), (-40, 0), (0, -40)] {
+            prism += &format!("v {x} {y} {z}\n");
+        }
+    }
+    // The first side is wound against the others.
+    prism += "f 5 6 2 1\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    let desk = Desk::new();
+    desk.file("prism.obj", &prism);
+    let line = "bake glass-cylinder --set structure.mesh.file=prism.obj --photons 1e4 --face 8 \
+                --bins 2 -o prism.exr";
+    for _ in 0..2 {
+        let output = desk.run(line);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        assert!(said.contains("2 faces were wound against"), "{said}");
+    }
+}

@@ -17,9 +17,9 @@ fn structure(name: &str, class: usize, set: &[String]) -> Structure {
     station.structure.clone()
 }
 
-fn table(fiber: &Fiber, seed: u64) -> StructureTable {
+fn table(fiber: &Fiber, seed: u64, photons: u64) -> StructureTable {
     let settings = Settings {
-        photons: 400_000,
+        photons,
         bins: 4,
         face: 8,
         seed,
@@ -87,10 +87,10 @@ fn deviation(a: &StructureTable, b: &StructureTable) -> f64 {
     (chi2 - groups) / (2.0 * groups).sqrt()
 }
 
-fn compare(name: &str, class: usize) {
+fn compare(name: &str, class: usize, photons: u64, more: &[&str]) {
     let fiber = Fiber::build(&structure(name, class, &[]), SEED).unwrap();
-    let truth = table(&fiber, 1);
-    let mesh = table(&remodeled(&fiber, name, class, &[]), 2);
+    let truth = table(&fiber, 1, photons);
+    let mesh = table(&remodeled(&fiber, name, class, more), 2, photons);
     let lost: u64 = (0..4).map(|node| mesh.ledger(node, 0).lost).sum();
     let emitted: u64 = (0..4).map(|node| mesh.ledger(node, 0).emitted).sum();
     assert!(lost as f64 <= 1e-5 * emitted as f64, "{name}: {lost} lost");
@@ -101,19 +101,60 @@ fn compare(name: &str, class: usize) {
 
 #[test]
 fn human() {
-    compare("human", 0);
+    compare("human", 0, 400_000, &[]);
 }
 
 /// Diamond petals and a ladder.
 #[test]
 fn mink_underhair() {
-    compare("mink", 1);
+    compare("mink", 1, 400_000, &[]);
 }
 
 /// Bubbles.
 #[test]
 fn polar_bear() {
-    compare("polar-bear", 0);
+    compare("polar-bear", 0, 400_000, &[]);
+}
+
+/// Gaps between wedge discs, joined by a channel: bodies that overlap.
+#[test]
+fn red_fox() {
+    compare("red-fox", 0, 120_000, &[]);
+}
+
+/// Letters of ovals that overlap.
+#[test]
+fn mink() {
+    compare("mink", 0, 120_000, &[]);
+}
+
+/// Islands of keratin in films of air.
+#[test]
+fn brown_bear() {
+    compare("brown-bear", 0, 120_000, &[]);
+}
+
+/// Cells with edges, in a waisted section.
+#[test]
+fn hare() {
+    compare("hare", 0, 120_000, &[]);
+}
+
+/// A medium in pieces, by the lines that the command prints.
+#[test]
+fn cow() {
+    let fiber = Fiber::build(&structure("cow", 0, &[]), SEED).unwrap();
+    let medium = fiber.medium(vair::fiber::Region::Medulla);
+    let set = [
+        "kind=medium".to_owned(),
+        format!("scattering_per_um={}", medium.scattering_per_um),
+        format!("asymmetry={}", medium.asymmetry),
+        format!("pigment={}", medium.pigment),
+    ];
+    let last = species::load("cow", &[]).unwrap().classes[0].stations.len() - 1;
+    let set = set.map(|s| format!("guard.stations.{last}.medulla.{s}"));
+    let set: Vec<&str> = set.iter().map(String::as_str).collect();
+    compare("cow", 0, 120_000, &set);
 }
 
 /// The comparison sees an index that is off by a thirtieth.
@@ -121,7 +162,7 @@ fn polar_bear() {
 fn a_wrong_index_is_seen() {
     let fiber = Fiber::build(&structure("human", 0, &[]), SEED).unwrap();
     let wrong = remodeled(&fiber, "human", 0, &["structure.ior=1.5"]);
-    let off = deviation(&table(&fiber, 1), &table(&wrong, 2));
+    let off = deviation(&table(&fiber, 1, 400_000), &table(&wrong, 2, 400_000));
     eprintln!("index 1.50: {off:.2} sigma");
     assert!(off > 20.0, "{off}");
 }

@@ -193,7 +193,7 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
             Format::Ply => mesh::write_ply(path, &fiber.mesh())?,
             Format::Glb => {
                 AtomicFile::write_all_to(path, &fiber.to_glb(&species.name))?;
-                console.say(mesh::how_to_use(path, fiber.period_um()));
+                console.say(mesh::how_to_use(path, &fiber));
             }
         }
     }

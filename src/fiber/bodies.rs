@@ -5,6 +5,10 @@
 //! next until none holds it. Where a ray is follows from the element it starts on, never from the
 //! sign of a distance there, so that rounding can move a hit but not lose one.
 
+mod shape;
+
+pub(super) use shape::Shape;
+
 use super::convex::{Convex, Plane, Quadric, holds};
 use super::grid::Grid;
 use super::section::nearest_image;
@@ -265,13 +269,6 @@ impl Bodies {
         let quadric = &self.quadrics[index];
         let q = p - self.center_near(body, p.z) - quadric.center;
         quadric.map.transpose() * (quadric.map * q)
-    }
-
-    /// Where a ray from a body's center leaves it.
-    pub(super) fn boundary(&self, index: u32, dir: DVec3) -> DVec3 {
-        let center = self.bodies[index as usize].center;
-        let chord = self.chord(index, center, dir, center.z, None);
-        center + chord.map_or(0.0, |c| c.leave.max(0.0)) * dir
     }
 
     /// Where a ray is in the image of a body nearest to `z`.

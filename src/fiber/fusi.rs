@@ -16,7 +16,7 @@ const MARGIN_UM: f64 = 0.3;
 
 /// The fusi of one period; they may overlap.
 ///
-/// * `inner`, `outer`: where the cortex begins and ends, in units of the semi-axes.
+/// * `inner`, `outer`: where the cortex begins and ends, in units of the section's radius.
 ///
 /// # Errors
 /// When the cortex is thinner than a fusus.
@@ -49,7 +49,8 @@ pub(super) fn build(
         let mut rng = Rng::new(seed ^ 0xf051_0000, k);
         // Even over the area.
         let rho = (lo * lo + (hi * hi - lo * lo) * rng.uniform()).sqrt();
-        let across = DVec2::from_angle(std::f64::consts::TAU * rng.uniform()) * rho;
+        let phi = std::f64::consts::TAU * rng.uniform();
+        let across = DVec2::from_angle(phi) * rho * section.rho(phi);
         let size = 0.7 + 0.6 * rng.uniform();
         let semi = DVec3::new(semi.x, semi.y, size * semi.z);
         Convex {
@@ -64,6 +65,7 @@ pub(super) fn build(
             island: false,
         }
     });
-    let half = [outer * section.a, outer * section.b];
+    let widest = section.radii().into_iter().fold(0.0, f64::max);
+    let half = [outer * widest * section.a, outer * widest * section.b];
     Ok(Some(Bodies::new(fusi.collect(), period, half, true)))
 }

@@ -1,8 +1,10 @@
 //! The uniserial ladder: a stack of puck-shaped voids, one a rung.
 
+use super::convex::{Convex, Plane};
+use super::medulla::Part;
 use super::section::{UnitRay, floor};
 use crate::sampling::Rng;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// One void: `(rho / radius)^4 + ((z - center) / half)^4 <= 1`, a superellipsoid of exponent 4.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +40,7 @@ struct Rung {
 /// Level at which a root counts as found: some roundings of its terms, 1e-13 of the size in place.
 const CONVERGED: f64 = 1e-14;
 /// Share of the medulla's radius that a void takes; the rest is its tube's wall.
-const WIDTH: f64 = 0.92;
+pub(super) const WIDTH: f64 = 0.92;
 
 impl Ladder {
     /// * `ratio`: radius of the medulla in units of the semi-axes.
@@ -105,6 +107,27 @@ impl Ladder {
     /// The pucks that are there.
     pub(super) fn present(&self) -> impl Iterator<Item = &Puck> {
         self.pucks.iter().filter(|p| p.present)
+    }
+
+    /// The pucks that are there as discs of other shapes, each in convex parts that overlap.
+    pub(super) fn within(&self, parts: &[Part]) -> Vec<Convex> {
+        let mut discs = Vec::new();
+        for puck in self.present() {
+            for part in parts {
+                let mut planes = part.planes(DVec2::ZERO);
+                planes.extend([DVec3::Z, DVec3::NEG_Z].map(|normal| Plane {
+                    normal,
+                    offset: puck.half,
+                }));
+                discs.push(Convex {
+                    center: DVec3::Z * puck.center,
+                    half: part.half.extend(puck.half),
+                    planes,
+                    ..Convex::default()
+                });
+            }
+        }
+        discs
     }
 
     /// The rung whose pitch holds `z`; its puck may be shifted into a neighbor's.

@@ -4,21 +4,26 @@ mod channel;
 mod cloisonne;
 mod columns;
 mod detail;
+mod edge;
 mod globules;
 mod lattice;
 mod pieces;
+mod rim;
 
 pub(super) use detail::Homogeneous;
 #[cfg(test)]
 pub(super) use detail::equivalent;
+pub(super) use edge::{Edge, Part};
 pub(super) use pieces::Pieces;
+pub(super) use rim::Rim;
 
 use super::bodies::Bodies;
 use super::convex::Convex;
 use super::froth::Froth;
-use super::ladder::Ladder;
+use super::ladder::{self, Ladder};
 use super::packing::Recipe;
 use super::section::{Section, UnitRay};
+use super::surface::Surface;
 use super::{FiberError, Region};
 use crate::species::{MedullaKind, Structure};
 use glam::{DVec2, DVec3};
@@ -37,8 +42,13 @@ pub(super) enum Voids {
 /// The medulla of a fiber.
 #[derive(Clone, Debug)]
 pub(super) struct Medulla {
-    /// Radius in units of the semi-axes; 0 for none.
+    /// Radius in units of the section's; 0 for none.
     pub(super) ratio: f64,
+    /// Its outline in a section that is no ellipse; without one the circle of that radius in the
+    /// unit-circle frame.
+    pub(super) rim: Option<Box<Rim>>,
+    /// Radius of a circle in the unit-circle frame that holds it.
+    reach: f64,
     pub(super) voids: Voids,
     /// The medium, where there is one instead of voids.
     pub(super) medium: Option<Homogeneous>,
@@ -48,9 +58,12 @@ pub(super) struct Medulla {
 
 /// The room that voids may take in one period.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Room {
-    /// Semi-axes of the ellipse across, micrometers.
+pub(super) struct Room<'a> {
+    /// Semi-axes of the ellipse across, the largest there is in a section of another shape,
+    /// micrometers.
     semi: DVec2,
+    /// How far voids may reach in such a section.
+    edge: Option<&'a Edge>,
     period: f64,
     seed: u64,
 }
@@ -93,6 +106,8 @@ impl Medulla {
     pub(super) fn none() -> Self {
         Self {
             ratio: 0.0,
+            rim: None,
+            reach: 0.0,
             voids: Voids::None,
             medium: None,
             pieces: None,
@@ -119,11 +134,11 @@ impl Medulla {
         }
     }
 
-    /// * `rho_min`: least radius of the cuticle in units of the semi-axes.
+    /// * `surface`: the cuticle.
     pub(super) fn new(
         structure: &Structure,
         section: &Section,
-        rho_min: f64,
+        surface: &Surface,
         period: f64,
         seed: u64,
     ) -> Result<Self, FiberError> {
@@ -132,6 +147,8 @@ impl Medulla {
         if ratio <= 0.0 || medulla.kind == MedullaKind::None {
             return Ok(Self::none());
         }
+        // At the waist a cuticle is as far away as the section is thin there.
+        let rho_min = surface.rho_min() / section.rho_min();
         let least_radius = rho_min * section.b;
         if ratio * section.b >= least_radius - 0.02 {
             return Err(FiberError::MedullaTooWide {
@@ -143,18 +160,36 @@ impl Medulla {
             MedullaKind::Lattice { .. } => LEAST_CORTEX_OF_LATTICE_UM,
             _ => LEAST_CORTEX_UM,
         };
-        let reach = ratio.min(rho_min - cortex / section.b).max(0.0);
         let axes = DVec2::new(section.a, section.b);
+        let edge = match surface {
+            Surface::Scales(scales) if !section.is_ellipse() => {
+                let width = match medulla.kind {
+                    MedullaKind::Ladder { .. } => ladder::WIDTH,
+                    MedullaKind::SChannel { .. } => channel::WIDTH,
+                    _ => 1.0,
+                };
+                Some(Edge::new(section, scales, width * ratio, cortex))
+            }
+            _ => None,
+        };
+        let semi = match &edge {
+            Some(edge) => edge.inscribed(axes) * axes,
+            None => ratio.min(rho_min - cortex / section.b).max(0.0) * axes,
+        };
         let room = Room {
-            semi: reach * axes,
+            semi,
+            edge: edge.as_ref(),
             period,
             seed,
         };
+        let rim = edge.as_ref().map(|_| Box::new(Rim::new(section, ratio)));
         let pieces = Pieces::new(medulla.continuity, period, seed);
         let radius = ratio * (section.a * section.b).sqrt();
         let medium = detail::medium(medulla, radius, period);
         let mut core = Self {
             ratio,
+            reach: rim.as_ref().map_or(ratio, |rim| rim.reach()),
+            rim,
             voids: Voids::None,
             medium,
             pieces,
@@ -162,8 +197,11 @@ impl Medulla {
         if medium.is_none() {
             core.voids = core.build(structure, section, &room)?;
         } else if let Some(pieces) = &core.pieces {
-            let cylinders = pieces.cylinders(ratio * axes);
-            let half = (ratio * axes).to_array();
+            let cylinders = match &edge {
+                Some(edge) => pieces.cylinders_within(edge),
+                None => pieces.cylinders(ratio * axes),
+            };
+            let half = (core.reach * axes).to_array();
             core.voids = Voids::Bodies(Box::new(Bodies::new(cylinders, period, half, true)));
         }
         Ok(core)
@@ -174,12 +212,12 @@ impl Medulla {
         &self,
         structure: &Structure,
         section: &Section,
-        room: &Room,
+        room: &Room<'_>,
     ) -> Result<Voids, FiberError> {
         let (period, seed) = (room.period, room.seed);
         let bodies = |all: Vec<Convex>, unions| {
             let kept = self.within_pieces(all, |c| c.center.z);
-            let half = (self.ratio * DVec2::new(section.a, section.b)).to_array();
+            let half = (self.reach * DVec2::new(section.a, section.b)).to_array();
             Voids::Bodies(Box::new(Bodies::new(kept, period, half, unions)))
         };
         Ok(match structure.medulla.kind {
@@ -199,7 +237,10 @@ impl Medulla {
                 if let Some(pieces) = &self.pieces {
                     ladder.keep(|z| pieces.holds(z));
                 }
-                Voids::Ladder(ladder)
+                match room.edge {
+                    Some(edge) => bodies(ladder.within(&edge.parts()), true),
+                    None => Voids::Ladder(ladder),
+                }
             }
             MedullaKind::Multiserial {
                 cell_um,
@@ -252,7 +293,7 @@ impl Medulla {
     fn froth(
         &self,
         section: &Section,
-        room: &Room,
+        room: &Room<'_>,
         [radius_um, radius_sigma, air_fraction]: [f64; 3],
     ) -> Result<Voids, FiberError> {
         let whole = [[0.0, room.period]];
@@ -262,6 +303,8 @@ impl Medulla {
             air_fraction,
             area: std::f64::consts::PI * self.ratio * self.ratio * section.a * section.b,
             semi: room.semi,
+            edge: room.edge,
+            axes: DVec2::new(section.a, section.b),
             wobble: FROTH_WOBBLE,
             period: room.period,
             spans: self.pieces.as_ref().map_or(&whole, Pieces::spans),
@@ -272,7 +315,7 @@ impl Medulla {
                 asked: air_fraction,
                 reached,
             })?;
-        let half = [self.ratio * section.a, self.ratio * section.b];
+        let half = [self.reach * section.a, self.reach * section.b];
         Ok(Voids::Froth(Froth::new(spheres, room.period, half)))
     }
 
@@ -311,8 +354,9 @@ impl Medulla {
                 froth.volume() / (across * section.a * section.b * period)
             }
             Voids::Bodies(bodies) => {
-                let semi = self.ratio * DVec2::new(section.a, section.b);
-                detail::measured_air(bodies, semi, period)
+                let axes = DVec2::new(section.a, section.b);
+                let area = std::f64::consts::PI * self.ratio * self.ratio * axes.element_product();
+                detail::measured_air(bodies, self.reach * axes, area, period)
             }
         }
     }
@@ -331,14 +375,14 @@ impl Medulla {
             Voids::Ladder(ladder) => ladder.enter(&rays.unit, t0, t1, from),
             Voids::Froth(froth) => {
                 // Cells cover the medulla only.
-                let (a, b) = rays.unit.inside_circle(self.ratio)?;
+                let (a, b) = rays.unit.inside_circle(self.reach)?;
                 let (t0, t1) = (t0.max(a), t1.min(b));
                 (t0 < t1)
                     .then(|| froth.enter(rays.origin, rays.dir, t0, t1, from))
                     .flatten()
             }
             Voids::Bodies(bodies) => {
-                let (a, b) = rays.unit.inside_circle(self.ratio)?;
+                let (a, b) = rays.unit.inside_circle(self.reach)?;
                 let (t0, t1) = (t0.max(a), t1.min(b));
                 (t0 < t1)
                     .then(|| bodies.enter(rays.origin, rays.dir, t0, t1, from))
@@ -383,8 +427,11 @@ impl Medulla {
 
     /// Whether a point is within the outline of the medulla and of one of its pieces.
     pub(super) fn holds(&self, unit: DVec3) -> bool {
-        unit.x * unit.x + unit.y * unit.y < self.ratio * self.ratio
-            && self.pieces.as_ref().is_none_or(|p| p.holds(unit.z))
+        let inside = match &self.rim {
+            Some(rim) => rim.holds(unit),
+            None => unit.x * unit.x + unit.y * unit.y < self.ratio * self.ratio,
+        };
+        inside && self.pieces.as_ref().is_none_or(|p| p.holds(unit.z))
     }
 
     /// The region of a point inside the cuticle.

@@ -1,11 +1,13 @@
 //! Triangles of one period, for other programs to look at and to model on.
 
 mod glb;
+mod hull;
 mod shell;
 
-use super::Fiber;
+use super::bodies::Bodies;
 use super::medulla::Voids;
 use super::surface::Surface;
+use super::{Fiber, Region};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -38,11 +40,25 @@ impl Fiber {
             return triangles.parts.clone();
         }
         let mut parts = match &self.surface {
-            Surface::Smooth => vec![cylinder("cuticle", 1.0, self.period_um)],
-            Surface::Scales(scales) => shell::tessellate(scales, ROUND).into(),
+            Surface::Smooth => vec![cylinder("cuticle", |_| 1.0, self.period_um)],
+            Surface::Scales(scales) => {
+                // Scales may repeat several times in the period of the medulla.
+                let count = (self.period_um / scales.period).round() as u32;
+                let parts = shell::tessellate(scales, ROUND);
+                let parts = parts.map(|part| part.repeated(scales.period, count));
+                parts.into()
+            }
         };
         if self.medulla.ratio > 0.0 {
             parts.push(self.medulla_part());
+        }
+        if let Some(fusi) = &self.fusi {
+            if parts.last().is_none_or(|part| part.name != "void") {
+                parts.push(Weld::new("void"));
+            }
+            if let Some(voids) = parts.last_mut() {
+                self.bodies_part(voids, fusi, VOID_ROUND.0);
+            }
         }
         let (a, b) = (self.section.a, self.section.b);
         parts
@@ -73,19 +89,23 @@ impl Fiber {
         let mut weld = Weld::new("void");
         // From pole to pole there are half as many steps, and two triangles to each.
         let round = ((VOID_TRIANGLES / self.void_count().max(1)) as f64).sqrt() as usize;
-        let round = round.clamp(VOID_ROUND.0, VOID_ROUND.1) / 4 * 4;
+        let round = round.clamp(VOID_ROUND.0, VOID_ROUND.1) / 8 * 8;
         match &self.medulla.voids {
-            Voids::None => weld = cylinder("medulla", self.medulla.ratio, self.period_um),
+            Voids::None => {
+                let ratio = self.medulla.ratio;
+                let radius = |phi: f64| match &self.medulla.rim {
+                    // At the polar angle: the section's outline in the small.
+                    Some(_) => ratio * self.section.rho(phi),
+                    None => ratio,
+                };
+                weld = cylinder("medulla", radius, self.period_um);
+            }
+            // Half as many steps: their edges are found wherever they are.
             Voids::Bodies(bodies) => {
-                // Convex: from the center out to the boundary in every direction.
-                for body in 0..bodies.len() as u32 {
-                    closed(&mut weld, round, |theta, phi| {
-                        let (sin, cos) = theta.sin_cos();
-                        let dir = DVec3::new(sin * phi.cos(), sin * phi.sin(), cos);
-                        let p = bodies.boundary(body, dir);
-                        DVec3::new(p.x / a, p.y / b, p.z)
-                    });
+                if self.medulla.fill() == Region::Medulla {
+                    weld = Weld::new("medulla");
                 }
+                self.bodies_part(&mut weld, bodies, round / 2);
             }
             Voids::Ladder(ladder) => {
                 for p in ladder.present() {
@@ -114,6 +134,14 @@ impl Fiber {
         weld
     }
 
+    /// Convex bodies.
+    fn bodies_part(&self, weld: &mut Weld, bodies: &Bodies, round: usize) {
+        let (a, b) = (self.section.a, self.section.b);
+        for shape in (0..bodies.len() as u32).filter_map(|index| bodies.shape(index)) {
+            hull::add(weld, &shape, round, |p| DVec3::new(p.x / a, p.y / b, p.z));
+        }
+    }
+
     /// Wedges that the scaled surface is made of; 0 for a bare cylinder.
     pub fn sector_count(&self) -> usize {
         match &self.surface {
@@ -132,7 +160,7 @@ impl Fiber {
 
     /// Voids in a period.
     pub fn void_count(&self) -> usize {
-        if let Some(triangles) = &self.triangles {
+        if let Some(triangles) = self.modeled() {
             return triangles.void_count;
         }
         match &self.medulla.voids {
@@ -144,12 +172,13 @@ impl Fiber {
     }
 }
 
-fn cylinder(name: &'static str, radius: f64, period: f64) -> Weld {
+/// * `radius`: at an angle, in the unit-circle frame.
+fn cylinder(name: &'static str, radius: impl Fn(f64) -> f64, period: f64) -> Weld {
     let mut weld = Weld::new(name);
     for i in 0..ROUND {
         let [p, q] = [i, i + 1].map(|k| {
             let phi = TAU * (k % ROUND) as f64 / ROUND as f64;
-            radius * DVec3::new(phi.cos(), phi.sin(), 0.0)
+            radius(phi) * DVec3::new(phi.cos(), phi.sin(), 0.0)
         });
         let up = DVec3::Z * period;
         weld.polygon(&[p, q, q + up, p + up]);
@@ -202,6 +231,21 @@ impl Weld {
             triangles: Vec::new(),
             known: HashMap::new(),
         }
+    }
+
+    /// The same several times, a period apart along z, joined where they meet.
+    fn repeated(self, period: f64, count: u32) -> Self {
+        if count <= 1 {
+            return self;
+        }
+        let mut all = Self::new(self.name);
+        for k in 0..count {
+            let up = f64::from(k) * period * DVec3::Z;
+            for t in &self.triangles {
+                all.polygon(&t.map(|v| self.points[v as usize] + up));
+            }
+        }
+        all
     }
 
     /// The index of a point: that of a known one no farther than rounding.

@@ -25,6 +25,7 @@ mod surface;
 mod trace;
 mod triangles;
 mod voronoi;
+mod waist;
 
 #[cfg(test)]
 mod tests;
@@ -38,13 +39,14 @@ use crate::species::{CuticlePattern, FiberMesh, MedullaKind, Structure};
 use bodies::Bodies;
 use cortex::Pigment;
 use glam::DVec3;
-use medulla::{Homogeneous, Medulla};
+use medulla::{Homogeneous, Medulla, Voids};
 use optics::OpticalParts;
 use pattern::Pattern;
 use scales::Scales;
 use section::Section;
 use surface::{OuterState, Surface};
-use triangles::Triangles;
+use std::f64::consts::TAU;
+use triangles::{Maker, Triangles, turned, twisted};
 
 /// A boundary met by a ray.
 #[derive(Clone, Copy, Debug)]
@@ -76,6 +78,8 @@ enum Element {
     Outer(OuterState),
     /// The outline of a medulla without voids.
     Outline,
+    /// As much in a section that is no ellipse.
+    Rim(OuterState),
     Void(u32),
     /// A face of a cortical fusus.
     Fusus(u32),
@@ -95,8 +99,12 @@ pub struct Fiber {
     medulla: Medulla,
     fusi: Option<Box<Bodies>>,
     pigment: Pigment,
-    /// Stands in for all of these where the fiber is a designer's mesh.
+    /// Stands in for all of these where the fiber is a designer's mesh, and is what they look like
+    /// where it is twisted.
     triangles: Option<Box<Triangles>>,
+    /// Radians per micrometer by which the section turns about the axis, counterclockwise seen from
+    /// the tip.
+    twist: f64,
     period_um: f64,
     bounding_radius_um: f64,
     optics: OpticalParts,
@@ -114,6 +122,23 @@ impl Fiber {
         if let Some(mesh) = &structure.mesh {
             return Self::from_mesh(mesh, structure);
         }
+        let mut fiber = Self::straight(structure, seed)?;
+        fiber.twist = twist_of(structure);
+        if fiber.twist != 0.0 {
+            // No ray is straight in a frame that turns with the section: triangles are traced.
+            let mesh = twisted(&fiber.mesh(), fiber.period_um, fiber.twist);
+            let is_medium = fiber.medulla.medium.is_some();
+            let own = Maker::Own {
+                overlap: matches!(fiber.medulla.voids, Voids::Bodies(_)) || fiber.fusi.is_some(),
+            };
+            let triangles = Triangles::new(&mesh, is_medium, fiber.twist, own)?;
+            fiber.triangles = Some(Box::new(triangles));
+        }
+        Ok(fiber)
+    }
+
+    /// The fiber without its twist.
+    fn straight(structure: &Structure, seed: u64) -> Result<Self, FiberError> {
         let section = Section::of(structure)?;
         let cuticle = &structure.cuticle;
         if cuticle.pattern != CuticlePattern::Smooth && cuticle.height_um > section.b / 3.0 {
@@ -142,8 +167,8 @@ impl Fiber {
             }
             _ => section.a * surface.rho_max(),
         };
-        let medulla = Medulla::new(structure, &section, surface.rho_min(), period_um, seed)?;
-        let cortex = (medulla.ratio, surface.rho_min());
+        let medulla = Medulla::new(structure, &section, &surface, period_um, seed)?;
+        let cortex = (medulla.ratio, surface.rho_min() / section.rho_min());
         let fusi = fusi::build(
             structure.cortex.fusi_per_mm,
             &section,
@@ -168,6 +193,7 @@ impl Fiber {
             fusi: fusi.map(Box::new),
             pigment,
             triangles: None,
+            twist: 0.0,
             period_um,
             bounding_radius_um,
             optics,
@@ -175,7 +201,9 @@ impl Fiber {
     }
 
     fn from_mesh(mesh: &FiberMesh, structure: &Structure) -> Result<Self, FiberError> {
-        let triangles = Triangles::new(mesh, &structure.medulla)?;
+        let is_medium = matches!(structure.medulla.kind, MedullaKind::Medium { .. });
+        let twist = twist_of(structure);
+        let triangles = Triangles::new(mesh, is_medium, twist, Maker::Designer)?;
         let section = Section::of(structure)?;
         let medium = medium_of_mesh(structure);
         let period_um = triangles.period_um();
@@ -194,9 +222,25 @@ impl Fiber {
             section,
             bounding_radius_um: triangles.radius_um,
             triangles: Some(Box::new(triangles)),
+            twist,
             period_um,
             optics: OpticalParts::new(structure, medium.as_ref()),
         })
+    }
+
+    /// The designer's mesh that it is, if it is one.
+    fn modeled(&self) -> Option<&Triangles> {
+        let triangles = self.triangles.as_deref();
+        triangles.filter(|_| self.structure.mesh.is_some())
+    }
+
+    /// A point or direction at height `z` as it is without the twist.
+    fn untwisted(&self, v: DVec3, z: f64) -> DVec3 {
+        if self.twist == 0.0 {
+            v
+        } else {
+            turned(v, -self.twist * z)
+        }
     }
 
     /// What was mended in a designer's mesh or is odd about it, one sentence each.
@@ -210,7 +254,7 @@ impl Fiber {
     #[must_use]
     pub fn in_channel(mut self, channel: usize) -> Self {
         let structure = self.structure.channel(channel);
-        let of_mesh = self.triangles.as_ref().and(medium_of_mesh(&structure));
+        let of_mesh = self.modeled().and_then(|_| medium_of_mesh(&structure));
         self.optics = OpticalParts::new(
             &structure,
             self.medulla.medium.as_ref().or(of_mesh.as_ref()),
@@ -244,17 +288,18 @@ impl Fiber {
 
     /// Half the extent of the mean section along x and y, micrometers: its semi-axes.
     pub fn semi_axes_um(&self) -> [f64; 2] {
-        if let Some(triangles) = &self.triangles {
-            return triangles.semi_axes_um;
+        match self.modeled() {
+            Some(triangles) => triangles.semi_axes_um,
+            None => self.section.half_extents(),
         }
-        self.section.half_extents()
     }
 
     /// Whether a point is within the outline of the medulla.
     pub fn is_in_medulla(&self, point: DVec3) -> bool {
-        if let Some(triangles) = &self.triangles {
+        if let Some(triangles) = self.modeled() {
             return matches!(triangles.region_at(point), Region::Medulla | Region::Void);
         }
+        let point = self.untwisted(point, point.z);
         self.medulla.holds(self.section.unit_point(point))
     }
 
@@ -271,7 +316,8 @@ impl Fiber {
     }
 
     /// Whether mirroring phi -> -phi gives the same statistics, so that tables may be folded. Holds
-    /// for every pattern here: none of them winds round the shaft. A designer's mesh may.
+    /// for every pattern here: none of them winds round the shaft. A twisted section does, and a
+    /// designer's mesh may.
     pub fn is_mirror_symmetric(&self) -> bool {
         self.triangles.is_none()
     }
@@ -311,7 +357,7 @@ impl Fiber {
 
     /// Share of the medulla's volume that is voids, gaps between its pieces counted; 0 without voids.
     pub fn air_fraction(&self) -> f64 {
-        if let Some(triangles) = &self.triangles {
+        if let Some(triangles) = self.modeled() {
             return triangles.air_fraction;
         }
         self.medulla.air_fraction(&self.section, self.period_um)
@@ -331,4 +377,9 @@ fn medium_of_mesh(structure: &Structure) -> Option<Homogeneous> {
         }),
         _ => None,
     }
+}
+
+/// Radians per micrometer.
+fn twist_of(structure: &Structure) -> f64 {
+    TAU * structure.twist_turns_per_cm * 1e-4
 }

@@ -1,6 +1,7 @@
 //! Packing spheres of given sizes into the medulla until none overlap.
 
 use super::froth::Sphere;
+use super::medulla::Edge;
 use crate::sampling::Rng;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
@@ -17,6 +18,9 @@ pub(super) struct Recipe<'a> {
     pub(super) area: f64,
     /// Semi-axes of the ellipse that spheres may reach, micrometers.
     pub(super) semi: DVec2,
+    /// What they may reach instead in a section that is no ellipse, and the semi-axes of the section.
+    pub(super) edge: Option<&'a Edge>,
+    pub(super) axes: DVec2,
     /// Depth of the dents in the wall, as a share of the radius.
     pub(super) wobble: f64,
     pub(super) period: f64,
@@ -93,15 +97,15 @@ impl Recipe<'_> {
                 .clamp(smallest.min(largest), largest)
                 .min(rest.cbrt());
             let (x, y) = crate::sampling::concentric_disk(rng.uniform(), rng.uniform());
+            let across = match self.edge {
+                None => DVec2::new(x * (semi.x - radius), y * (semi.y - radius).max(0.0)),
+                Some(edge) => x.hypot(y) * edge.at(y.atan2(x)),
+            };
             // Evenly along the hair: in a slender tube crowds could not get apart.
             let own = 4.0 / 3.0 * PI * radius.powi(3);
             let along = (sum + rng.uniform() * own) / target;
             spheres.push(Sphere {
-                center: DVec3::new(
-                    x * (semi.x - radius),
-                    y * (semi.y - radius).max(0.0),
-                    self.height_at(along),
-                ),
+                center: across.extend(self.height_at(along)),
                 radius,
             });
             sum += own;
@@ -149,7 +153,7 @@ impl Recipe<'_> {
 
     /// One round: overlapping pairs step apart, spheres outside step in. The longest way that one
     /// moved, and the greatest overlap before, as a share of the radius.
-    fn push_apart(&self, spheres: &mut [Sphere], pairs: &[(u32, u32)], wall: &Wall) -> (f64, f64) {
+    fn push_apart(&self, spheres: &mut [Sphere], pairs: &[(u32, u32)], wall: &Wall<'_>) -> (f64, f64) {
         let mut worst = 0.0f64;
         let before: Vec<DVec3> = spheres.iter().map(|s| s.center).collect();
         for &(i, j) in pairs {
@@ -169,7 +173,7 @@ impl Recipe<'_> {
         }
         let mut longest = 0.0f64;
         for (sphere, before) in spheres.iter_mut().zip(before) {
-            let over = pull_inside(sphere, wall.semi_at(sphere.center));
+            let over = wall.pull_inside(sphere);
             let over = over.max(self.keep_in_span(sphere));
             worst = worst.max(over / sphere.radius);
             longest = longest.max(self.apart(before, sphere.center).length_squared());
@@ -214,7 +218,7 @@ impl Recipe<'_> {
     }
 
     /// Shrinks all spheres alike until none overlap or reach out.
-    fn shrink_to_fit(&self, spheres: &mut [Sphere], wall: &Wall) {
+    fn shrink_to_fit(&self, spheres: &mut [Sphere], wall: &Wall<'_>) {
         let mut factor = 1.0f64;
         self.for_each_pair(spheres, 0.0, |i, j| {
             let (p, q) = (&spheres[i as usize], &spheres[j as usize]);
@@ -224,7 +228,7 @@ impl Recipe<'_> {
             factor = factor.min(fits.max(0.0));
         });
         for sphere in spheres.iter() {
-            let outside = reach_outside(sphere, wall.semi_at(sphere.center)).max(0.0);
+            let outside = wall.reach_outside(sphere).max(0.0);
             factor = factor.min(1.0 - outside / sphere.radius);
         }
         if factor < 1.0 {
@@ -235,16 +239,18 @@ impl Recipe<'_> {
     }
 }
 
-/// The wall of the tube: the ellipse with shallow dents.
-struct Wall {
+/// The wall of the tube: the ellipse, or the edge, with shallow dents.
+struct Wall<'a> {
+    edge: Option<&'a Edge>,
+    axes: DVec2,
     semi: DVec2,
     depth: f64,
     /// Wave numbers round and along, and phases.
     waves: [[f64; 3]; 6],
 }
 
-impl Wall {
-    fn new(recipe: &Recipe<'_>, seed: u64) -> Self {
+impl<'a> Wall<'a> {
+    fn new(recipe: &Recipe<'a>, seed: u64) -> Self {
         let round = std::f64::consts::PI * (recipe.semi.x + recipe.semi.y) / DENT_UM;
         let along = recipe.period / DENT_UM;
         let mut rng = Rng::new(seed ^ 0x3a11_0000, 0);
@@ -258,16 +264,18 @@ impl Wall {
             ]
         });
         Self {
+            edge: recipe.edge,
+            axes: recipe.axes,
             semi: recipe.semi,
             depth: recipe.wobble,
             waves,
         }
     }
 
-    /// Semi-axes of the wall beside a point.
-    fn semi_at(&self, p: DVec3) -> DVec2 {
+    /// Its size beside a point over that without dents.
+    fn scale_at(&self, p: DVec3) -> f64 {
         if self.depth == 0.0 {
-            return self.semi;
+            return 1.0;
         }
         let phi = (p.y * self.semi.x).atan2(p.x * self.semi.y);
         let sum: f64 = self
@@ -277,31 +285,55 @@ impl Wall {
             .sum();
         // The sum of six waves has a deviation of 1.7; dents point inward only.
         let dent = (0.5 + 0.25 * sum).clamp(0.0, 1.0);
-        self.semi * (1.0 - self.depth * dent)
+        1.0 - self.depth * dent
     }
-}
 
-/// How far a sphere reaches over the ellipse: at the normal of the nearest direction, to first order.
-fn reach_outside(sphere: &Sphere, semi: DVec2) -> f64 {
-    let c = sphere.center.truncate();
-    let nearest = nearest_on_ellipse(c, semi);
-    let inside = (c / semi).length_squared() < 1.0;
-    let distance = nearest.distance(c) * if inside { 1.0 } else { -1.0 };
-    sphere.radius - distance
-}
-
-/// Moves a sphere that reaches out back in. How far it reached.
-fn pull_inside(sphere: &mut Sphere, semi: DVec2) -> f64 {
-    let over = reach_outside(sphere, semi);
-    if over <= 0.0 {
-        return 0.0;
+    /// Its point nearest to the center of a sphere, and whether the center is inside.
+    fn nearest(&self, sphere: &Sphere) -> (DVec2, bool) {
+        let scale = self.scale_at(sphere.center);
+        let c = sphere.center.truncate();
+        match self.edge {
+            None => {
+                let semi = scale * self.semi;
+                let inside = (c / semi).length_squared() < 1.0;
+                (nearest_on_ellipse(c, semi), inside)
+            }
+            Some(edge) => {
+                let psi = (c.y / self.axes.y).atan2(c.x / self.axes.x);
+                let inside = c.length() < scale * edge.at(psi).length();
+                (edge.near(c, self.axes, scale), inside)
+            }
+        }
     }
-    let c = sphere.center.truncate();
-    let nearest = nearest_on_ellipse(c, semi);
-    let normal = (nearest / (semi * semi)).normalize();
-    let c = nearest - normal * (sphere.radius + 1e-3);
-    sphere.center = c.extend(sphere.center.z);
-    over
+
+    /// How far a sphere reaches over the wall: at the normal of the nearest direction, to first order.
+    fn reach_outside(&self, sphere: &Sphere) -> f64 {
+        let (nearest, inside) = self.nearest(sphere);
+        let distance = nearest.distance(sphere.center.truncate());
+        sphere.radius - if inside { distance } else { -distance }
+    }
+
+    /// Moves a sphere that reaches out back in. How far it reached.
+    fn pull_inside(&self, sphere: &mut Sphere) -> f64 {
+        let (nearest, inside) = self.nearest(sphere);
+        let c = sphere.center.truncate();
+        let apart = nearest - c;
+        let distance = apart.length() * if inside { 1.0 } else { -1.0 };
+        let over = sphere.radius - distance;
+        if over <= 0.0 {
+            return 0.0;
+        }
+        let outward = match self.edge {
+            None => (nearest / (self.semi * self.semi)).normalize(),
+            // Along the way to the wall, which meets it squarely.
+            Some(_) => (apart * distance.signum())
+                .try_normalize()
+                .unwrap_or_else(|| nearest.normalize_or_zero()),
+        };
+        let c = nearest - outward * (sphere.radius + 1e-3);
+        sphere.center = c.extend(sphere.center.z);
+        over
+    }
 }
 
 /// The point of an ellipse nearest to `p`, by iteration over the evolute (Chatfield 2017): five

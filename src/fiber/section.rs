@@ -129,6 +129,11 @@ impl Section {
         self.outline.as_ref().map_or(1.0, |o| o.at(psi))
     }
 
+    /// Least radius of the section, in units of the ellipse's.
+    pub(super) fn rho_min(&self) -> f64 {
+        self.radii().into_iter().fold(f64::INFINITY, f64::min)
+    }
+
     /// Radii evenly round the outline; one of them for an ellipse.
     pub(super) fn radii(&self) -> Vec<f64> {
         const COUNT: u32 = 256;

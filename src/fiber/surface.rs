@@ -142,7 +142,7 @@ fn leave_smooth<T>(
 
 impl Scales {
     /// The cell in which a ray starts on `side`, and what of it the start lies on.
-    fn start(
+    pub(super) fn start(
         &self,
         ray: &UnitRay,
         t: f64,
@@ -230,7 +230,7 @@ impl Scales {
     }
 }
 
-fn outer_hit(march: March) -> Option<OuterHit> {
+pub(super) fn outer_hit(march: March) -> Option<OuterHit> {
     match march {
         March::Through | March::Lost => None,
         March::Face { t, cell, gradient } => Some(OuterHit {

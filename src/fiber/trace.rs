@@ -2,7 +2,7 @@
 
 use super::medulla::Rays;
 use super::section::UnitRay;
-use super::surface::{Inward, OuterHit, OuterState};
+use super::surface::{Inward, OuterHit, OuterState, Surface};
 use super::{Element, Fiber, Hit, HitState, Part, Region};
 use glam::DVec3;
 
@@ -22,7 +22,7 @@ impl Fiber {
     ) -> Option<Hit> {
         if let Some(triangles) = &self.triangles {
             let mut hit = triangles.next_hit(origin, dir, region, from)?;
-            hit.pigment_um = hit.t * self.medium(region).pigment;
+            hit.pigment_um = self.pigment_um(origin, dir, region, hit.t);
             return Some(hit);
         }
         let rays = Rays {
@@ -48,10 +48,16 @@ impl Fiber {
             Region::Outside => self.enter(origin, dir, outer)?,
             Region::Cortex => {
                 let core = |t0, t1| self.core_hit(&rays, t0, t1, element);
-                match self.surface.leave(&rays.unit, outer, core) {
+                let inward = match &self.surface {
+                    Surface::Scales(scales) if !self.section.is_ellipse() => {
+                        scales.leave_around(&rays.unit, outer, core)
+                    }
+                    surface => surface.leave(&rays.unit, outer, core),
+                };
+                match inward {
                     Inward::Outer(hit) => self.outer_hit(&rays, hit, Region::Outside),
-                    Inward::Core((t, Element::Outline)) => {
-                        self.outline_hit(&rays, t, Region::Medulla)
+                    Inward::Core((t, element @ (Element::Outline | Element::Rim(_)))) => {
+                        self.outline_hit(&rays, t, element, Region::Medulla)
                     }
                     Inward::Core((t, element @ Element::Fusus(_))) => {
                         self.void_hit(&rays, t, element, Region::Void)
@@ -81,6 +87,13 @@ impl Fiber {
     ///
     /// * `t`: length of the way, micrometers, no longer than to the next boundary.
     pub fn pigment_um(&self, origin: DVec3, dir: DVec3, region: Region, t: f64) -> f64 {
+        if self.modeled().is_some() {
+            return t * self.medium(region).pigment;
+        }
+        // Streaks and walls turn with the section, by a few degrees at most along one way: as in the
+        // middle of it all along.
+        let middle = origin.z + 0.5 * t * dir.z;
+        let (origin, dir) = (self.untwisted(origin, middle), self.untwisted(dir, middle));
         let rays = Rays {
             origin,
             dir,
@@ -91,9 +104,6 @@ impl Fiber {
 
     #[inline]
     fn pigment_on(&self, rays: &Rays, region: Region, t: f64) -> f64 {
-        if self.triangles.is_some() {
-            return t * self.medium(region).pigment;
-        }
         match region {
             Region::Outside | Region::Cuticle | Region::Void => 0.0,
             Region::Medulla => t * self.medium(region).pigment,
@@ -143,6 +153,16 @@ impl Fiber {
         if self.medulla.ratio <= 0.0 {
             return None;
         }
+        if let Some(rim) = &self.medulla.rim
+            && self.medulla.outlined()
+        {
+            let from = match from {
+                Some(Element::Rim(state)) => Some(state),
+                _ => None,
+            };
+            let (t, state) = rim.enter(&rays.unit, from)?;
+            return (t >= t0 && t < t1).then_some((t, Element::Rim(state)));
+        }
         if self.medulla.outlined() {
             // The outline is convex: a ray that has just left it does not come back.
             if from == Some(Element::Outline) {
@@ -185,6 +205,14 @@ impl Fiber {
 
     /// Where a ray inside a homogeneous medulla leaves it.
     fn outline_from_inside(&self, rays: &Rays, from: Option<Element>) -> Option<Hit> {
+        if let Some(rim) = &self.medulla.rim {
+            let from = match from {
+                Some(Element::Rim(state)) => Some(state),
+                _ => None,
+            };
+            let (t, state) = rim.leave(&rays.unit, from)?;
+            return Some(self.outline_hit(rays, t, Element::Rim(state), Region::Cortex));
+        }
         let UnitRay { a, b, c, .. } = rays.unit;
         let t = if from == Some(Element::Outline) {
             -2.0 * b / a
@@ -194,7 +222,7 @@ impl Fiber {
         };
         // An axial ray stays inside for ever.
         t.is_finite()
-            .then(|| self.outline_hit(rays, t.max(0.0), Region::Cortex))
+            .then(|| self.outline_hit(rays, t.max(0.0), Element::Outline, Region::Cortex))
     }
 
     fn outer_hit(&self, rays: &Rays, hit: OuterHit, to: Region) -> Hit {
@@ -206,10 +234,13 @@ impl Fiber {
         self.hit(rays, hit.t, hit.gradient, to, part, element)
     }
 
-    fn outline_hit(&self, rays: &Rays, t: f64, to: Region) -> Hit {
+    fn outline_hit(&self, rays: &Rays, t: f64, element: Element, to: Region) -> Hit {
         let p = rays.unit.at(t);
-        let gradient = DVec3::new(p.x, p.y, 0.0);
-        self.hit(rays, t, gradient, to, Part::Medulla, Element::Outline)
+        let gradient = match &self.medulla.rim {
+            Some(rim) => rim.gradient(p),
+            None => DVec3::new(p.x, p.y, 0.0),
+        };
+        self.hit(rays, t, gradient, to, Part::Medulla, element)
     }
 
     fn void_hit(&self, rays: &Rays, t: f64, element: Element, to: Region) -> Hit {

@@ -19,23 +19,40 @@ const ROUNDS: usize = 15;
 /// Corners of the polygon that stands for the outline.
 const OUTLINE: u32 = 48;
 
-/// Splits an ellipse into `count` columns of about equal size. The same numbers give the same columns.
-pub(super) fn columns(count: usize, semi: DVec2) -> Vec<Column> {
+/// The polygon that stands for an ellipse.
+pub(super) fn ellipse(semi: DVec2) -> Vec<DVec2> {
+    (0..OUTLINE)
+        .map(|k| semi * DVec2::from_angle(TAU * f64::from(k) / f64::from(OUTLINE)))
+        .collect()
+}
+
+/// Area of a polygon.
+pub(super) fn area(corners: &[DVec2]) -> f64 {
+    let next = corners.iter().cycle().skip(1);
+    let sum: f64 = corners.iter().zip(next).map(|(p, q)| p.perp_dot(*q)).sum();
+    0.5 * sum
+}
+
+/// Splits what a star-shaped polygon about the axis holds into `count` columns of about equal size.
+/// The same numbers give the same columns.
+pub(super) fn columns(count: usize, outline: &[DVec2]) -> Vec<Column> {
     // A sunflower (Vogel 1979), then relaxed.
     let mut points: Vec<DVec2> = (0..count)
         .map(|i| {
             let r = ((i as f64 + 0.5) / count as f64).sqrt();
-            semi * r * DVec2::from_angle(i as f64 * 2.399_963_229_728_653)
+            let turn = (i as f64 * 0.381_966_011_250_105).fract() * outline.len() as f64;
+            let (k, f) = (turn as usize, turn.fract());
+            r * outline[k].lerp(outline[(k + 1) % outline.len()], f)
         })
         .collect();
     for _ in 0..ROUNDS {
         points = (0..count)
-            .map(|i| centroid(&polygon(&points, i, semi).0))
+            .map(|i| centroid(&polygon(&points, i, outline).0))
             .collect();
     }
     (0..count)
         .map(|i| {
-            let (corners, neighbors) = polygon(&points, i, semi);
+            let (corners, neighbors) = polygon(&points, i, outline);
             let center = points[i];
             let edges = neighbors.into_iter().map(|j| {
                 let apart = points[j] - center;
@@ -52,12 +69,10 @@ pub(super) fn columns(count: usize, semi: DVec2) -> Vec<Column> {
         .collect()
 }
 
-/// The cell of a point in the ellipse and the neighbors that bound it.
-fn polygon(points: &[DVec2], index: usize, semi: DVec2) -> (Vec<DVec2>, Vec<usize>) {
+/// The cell of a point in the outline and the neighbors that bound it.
+fn polygon(points: &[DVec2], index: usize, outline: &[DVec2]) -> (Vec<DVec2>, Vec<usize>) {
     let center = points[index];
-    let mut corners: Vec<DVec2> = (0..OUTLINE)
-        .map(|k| semi * DVec2::from_angle(TAU * f64::from(k) / f64::from(OUTLINE)))
-        .collect();
+    let mut corners = outline.to_vec();
     let mut others: Vec<usize> = (0..points.len()).filter(|&j| j != index).collect();
     others.sort_by(|&i, &j| {
         let (a, b) = (points[i], points[j]);
@@ -239,7 +254,7 @@ mod tests {
     #[test]
     fn columns_share_the_ellipse_evenly() {
         let semi = DVec2::new(30.0, 20.0);
-        let columns = columns(24, semi);
+        let columns = columns(24, &ellipse(semi));
         let even = std::f64::consts::PI * semi.x * semi.y / 24.0;
         for c in &columns {
             // The inscribed circle of a hexagon of the same area has a radius of 0.537 roots of it.

@@ -6,6 +6,7 @@ use crate::assembly::origin;
 use crate::bake::{Bake, Cache, Checkpoint, Ended, Found, Goal, Settings, SumsError, drive, find};
 use crate::blame::Blame;
 use crate::cli::{Console, Failure};
+use crate::fiber::Fiber;
 use crate::io::check_writable;
 use crate::species::{self, Structure};
 use crate::table::{Provenance, Undyed};
@@ -18,6 +19,12 @@ pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), 
     let settings = settings(args);
     check_output(args)?;
     check_writable(&args.output)?;
+    if station.structure.mesh.is_some() {
+        // Said of tables from the cache as well: they were baked of the same mesh.
+        for warning in Fiber::build(&station.structure, args.seed)?.warnings() {
+            console.say(format!("warning: {warning}"));
+        }
+    }
     let band = class.band_at(station.at);
     let job = Job {
         args,

@@ -1,6 +1,6 @@
 //! Fiber meshes as Wavefront OBJ and as PLY. Micrometers, z from root to tip.
 
-use crate::fiber::MeshPart;
+use crate::fiber::{Fiber, MeshPart, Region};
 use crate::io::{AtomicFile, FileError};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -59,12 +59,26 @@ pub(super) fn write_ply(path: &Path, parts: &[MeshPart]) -> Result<(), FileError
 }
 
 /// What to write into a species file to bake a mesh of ours.
-pub(super) fn how_to_use(path: &Path, period_um: f64) -> String {
+pub(super) fn how_to_use(path: &Path, fiber: &Fiber) -> String {
     // To a millionth of a micrometer: the ends are matched less closely than that.
-    let period_um = (period_um * 1e6).round() / 1e6;
+    let period_um = (fiber.period_um() * 1e6).round() / 1e6;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    format!(
+    let mut text = format!(
         "to bake it, with a species file beside it or --set:\n[structure.mesh]\nfile = {name:?}\n\
          period_um = {period_um}"
-    )
+    );
+    let medium = fiber.medium(Region::Medulla);
+    if medium.scattering_per_um > 0.0 {
+        let _ = write!(
+            text,
+            "\n[structure.medulla]\nkind = \"medium\"\nscattering_per_um = {}\nasymmetry = {}\n\
+             pigment = {}",
+            medium.scattering_per_um, medium.asymmetry, medium.pigment
+        );
+    }
+    let twist = fiber.structure().twist_turns_per_cm;
+    if twist != 0.0 {
+        let _ = write!(text, "\n[structure]\ntwist_turns_per_cm = {twist}");
+    }
+    text
 }

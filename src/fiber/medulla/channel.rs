@@ -15,7 +15,7 @@ const WEDGE: f64 = 0.8;
 /// Where the thin end of a disc stops, in radii from the axis.
 const THIN_END: f64 = 0.72;
 /// Share of the medulla's radius that the channel takes; the rest is its tube's wall.
-const WIDTH: f64 = 0.95;
+pub(super) const WIDTH: f64 = 0.95;
 
 /// A gap between two discs: a slab about a tilted plane.
 #[derive(Clone, Copy)]
@@ -27,11 +27,27 @@ struct Gap {
 }
 
 /// The gaps of one period and what joins them. They overlap.
-pub(super) fn build(room: &Room, pitch_um: f64) -> Vec<Convex> {
+pub(super) fn build(room: &Room<'_>, pitch_um: f64) -> Vec<Convex> {
     // An even number, or two discs of the same side meet where the period closes.
     let count = 2 * (0.5 * room.period / pitch_um).round().max(2.0) as usize;
     let pitch = room.period / count as f64;
-    let semi = WIDTH * room.semi;
+    let semi = match room.edge {
+        None => WIDTH * room.semi,
+        Some(edge) => edge.half(),
+    };
+    let disc = Convex {
+        quadrics: vec![Quadric::ellipsoid(DVec3::ZERO, semi.extend(f64::INFINITY))],
+        ..Convex::default()
+    };
+    let discs: Vec<Convex> = match room.edge {
+        None => vec![disc],
+        Some(edge) => (edge.parts().iter())
+            .map(|part| Convex {
+                planes: part.planes(DVec2::ZERO),
+                ..Convex::default()
+            })
+            .collect(),
+    };
     let gaps: Vec<Gap> = (0..count)
         .map(|k| {
             let mut rng = Rng::new(room.seed ^ 0x5c4a_0000, k as u64);
@@ -52,36 +68,33 @@ pub(super) fn build(room: &Room, pitch_um: f64) -> Vec<Convex> {
         if k + 1 == count {
             next.z += room.period;
         }
-        let outline = Quadric::ellipsoid(DVec3::ZERO, semi.extend(f64::INFINITY));
         let rise = (gap.slope * semi).length();
-        bodies.push(Convex {
-            center: DVec3::Z * gap.z,
-            half: semi.extend(gap.half + rise),
-            planes: vec![
-                tilted(gap.slope, gap.half, 1.0),
-                tilted(gap.slope, gap.half, -1.0),
-            ],
-            quadrics: vec![outline],
-            island: false,
-        });
+        let mut add = |z: f64, half: f64, planes: &[Plane]| {
+            for disc in &discs {
+                bodies.push(Convex {
+                    center: DVec3::Z * z,
+                    half: semi.extend(half),
+                    planes: [planes, &disc.planes].concat(),
+                    ..disc.clone()
+                });
+            }
+        };
+        let sides = [1.0, -1.0].map(|side| tilted(gap.slope, gap.half, side));
+        add(gap.z, gap.half + rise, &sides);
         // The slab between the two middles, beyond the thin end of the disc between them: where the
         // gaps come nearest, which is where this one rises.
         let toward = gap.slope.normalize_or_zero();
         let (middle, between) = (0.5 * (gap.z + next.z), 0.5 * (next.z - gap.z));
-        bodies.push(Convex {
-            center: DVec3::Z * middle,
-            half: semi.extend(between + rise.max((next.slope * semi).length())),
-            planes: vec![
-                tilted(next.slope, between, 1.0),
-                tilted(gap.slope, between, -1.0),
-                Plane {
-                    normal: (-toward).extend(0.0),
-                    offset: -THIN_END * (toward * semi).length(),
-                },
-            ],
-            quadrics: vec![outline],
-            island: false,
-        });
+        let sides = [
+            tilted(next.slope, between, 1.0),
+            tilted(gap.slope, between, -1.0),
+            Plane {
+                normal: (-toward).extend(0.0),
+                offset: -THIN_END * (toward * semi).length(),
+            },
+        ];
+        let rise = rise.max((next.slope * semi).length());
+        add(middle, between + rise, &sides);
     }
     bodies
 }

@@ -35,7 +35,7 @@ struct Stroke {
 
 impl Ovals {
     /// The ovals of one period. They overlap.
-    pub(super) fn build(&self, room: &Room) -> Result<Vec<Convex>, FiberError> {
+    pub(super) fn build(&self, room: &Room<'_>) -> Result<Vec<Convex>, FiberError> {
         let pairs = (0.5 * room.period / self.pitch_um).round().max(2.0) as usize;
         let pitch = 0.5 * room.period / pairs as f64;
         if self.height_um >= pitch - 0.5 * WALL_UM {
@@ -47,7 +47,11 @@ impl Ovals {
         let n = f64::from(self.columns);
         let count = (0.785 * n * n).round().max(1.0) as usize;
         let mut bodies = Vec::new();
-        for (c, column) in voronoi::columns(count, room.semi).iter().enumerate() {
+        let outline = match room.edge {
+            None => voronoi::ellipse(room.semi),
+            Some(edge) => edge.points().to_vec(),
+        };
+        for (c, column) in voronoi::columns(count, &outline).iter().enumerate() {
             let least = column.edges.iter().fold(f64::INFINITY, |d, e| d.min(e.1));
             // Neighbors' ovals touch and merge here and there; the outline cuts the outer ones.
             let radius = if least.is_finite() {
@@ -63,7 +67,7 @@ impl Ovals {
                     .extend(2.0 * pitch * (pair as f64 + 0.5) + shift);
                 let wide = radius * (0.9 + 0.2 * rng.uniform());
                 for stroke in self.letter(wide, pitch, &mut rng) {
-                    bodies.push(stroke.0.body(middle, stroke.1, room.semi));
+                    bodies.extend(stroke.0.body(middle, stroke.1, room));
                 }
             }
         }
@@ -126,7 +130,7 @@ impl Ovals {
 
 impl Stroke {
     /// An oval with blunt edges: an ellipsoid half as high again, cut flat.
-    fn body(&self, middle: DVec3, plane: DVec2, outline: DVec2) -> Convex {
+    fn body(&self, middle: DVec3, plane: DVec2, room: &Room<'_>) -> Option<Convex> {
         let center = middle + self.at;
         let along = plane.extend(0.0);
         let side = DVec3::new(-plane.y, plane.x, 0.0);
@@ -140,30 +144,38 @@ impl Stroke {
         .transpose();
         let length = over.length();
         let reach = self.across.max_element();
-        Convex {
+        let mut planes: Vec<Plane> = [1.0, -1.0]
+            .map(|sign| Plane {
+                normal: sign * over / length,
+                offset: self.half / length,
+            })
+            .to_vec();
+        let mut quadrics = vec![Quadric {
+            center: DVec3::ZERO,
+            map,
+        }];
+        let across = center.truncate();
+        if let Some(edge) = room.edge {
+            if !edge.holds(across) {
+                return None;
+            }
+            planes.extend(edge.box_planes(across, reach));
+        } else {
+            quadrics.push(Quadric::ellipsoid(
+                (-across).extend(0.0),
+                room.semi.extend(f64::INFINITY),
+            ));
+        }
+        Some(Convex {
             center,
             half: DVec3::new(
                 reach,
                 reach,
                 1.5 * self.half + self.slope.abs() * self.across.x,
             ),
-            planes: [1.0, -1.0]
-                .map(|sign| Plane {
-                    normal: sign * over / length,
-                    offset: self.half / length,
-                })
-                .to_vec(),
-            quadrics: vec![
-                Quadric {
-                    center: DVec3::ZERO,
-                    map,
-                },
-                Quadric::ellipsoid(
-                    DVec3::new(-center.x, -center.y, 0.0),
-                    outline.extend(f64::INFINITY),
-                ),
-            ],
+            planes,
+            quadrics,
             island: false,
-        }
+        })
     }
 }

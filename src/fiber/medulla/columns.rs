@@ -5,7 +5,7 @@ use crate::fiber::FiberError;
 use crate::fiber::convex::{Convex, Plane, Quadric};
 use crate::fiber::voronoi::{self, Column};
 use crate::sampling::Rng;
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
 /// Cells in columns.
@@ -49,7 +49,7 @@ pub(super) fn tire_tread(cell_um: f64, pitch_um: f64, septum_um: f64) -> Stack {
 
 impl Stack {
     /// The cells of one period.
-    pub(super) fn build(&self, room: &Room) -> Result<Vec<Convex>, FiberError> {
+    pub(super) fn build(&self, room: &Room<'_>) -> Result<Vec<Convex>, FiberError> {
         let rungs = (room.period / self.pitch_um).round().max(3.0) as usize;
         let pitch = room.period / rungs as f64;
         if self.septum_um >= 0.9 * pitch.min(self.cell_um) {
@@ -65,8 +65,12 @@ impl Stack {
                 medulla_um: 2.0 * room.semi.min_element(),
             });
         }
-        let count = PI * room.semi.x * room.semi.y / (self.cell_um * self.cell_um);
-        let columns = voronoi::columns(count.round().max(1.0) as usize, semi);
+        let (area, outline) = match room.edge {
+            None => (PI * room.semi.x * room.semi.y, voronoi::ellipse(semi)),
+            Some(edge) => (voronoi::area(edge.points()), edge.points().to_vec()),
+        };
+        let count = (area / (self.cell_um * self.cell_um)).round().max(1.0);
+        let columns = voronoi::columns(count as usize, &outline);
         let mut cells = Vec::with_capacity(rungs * columns.len());
         for (c, column) in columns.iter().enumerate() {
             let z = self.rungs(rungs, pitch, room.seed, c as u64);
@@ -76,7 +80,7 @@ impl Stack {
                 // A thin neighbor of a shifted cell keeps a third of the wall.
                 let most = 0.5 * (gap(k, above).min(gap(below, k)) - self.septum_um / 3.0);
                 let half = most.min(0.5 * (pitch - self.septum_um));
-                cells.push(self.cell(column, semi, z[k], half, pitch));
+                cells.extend(self.cell(column, room, z[k], half, pitch));
             }
         }
         Ok(cells)
@@ -94,7 +98,15 @@ impl Stack {
             .collect()
     }
 
-    fn cell(&self, column: &Column, semi: DVec2, z: f64, half: f64, pitch: f64) -> Convex {
+    /// A cell of a column; `None` where the middle of the column is no part of the medulla.
+    fn cell(
+        &self,
+        column: &Column,
+        room: &Room<'_>,
+        z: f64,
+        half: f64,
+        pitch: f64,
+    ) -> Option<Convex> {
         let wall = 0.5 * self.septum_um;
         let mut planes: Vec<Plane> = column
             .edges
@@ -110,23 +122,33 @@ impl Stack {
                 offset: half,
             });
         }
-        // A barrel that is narrower by the dent where rows meet.
-        let rise = (1.0 - (1.0 - self.dent).powi(2)).sqrt() / (0.5 * pitch);
-        let outline = Quadric {
-            center: (-column.center).extend(0.0),
-            map: DMat3::from_diagonal(DVec3::new(1.0 / semi.x, 1.0 / semi.y, rise)),
-        };
         let extent = column.half.extend(half);
+        let mut quadrics = Vec::with_capacity(2);
+        if let Some(edge) = room.edge {
+            if !edge.holds(column.center) {
+                return None;
+            }
+            planes.extend(edge.planes(column, wall));
+        } else {
+            // A barrel that is narrower by the dent where rows meet.
+            let semi = room.semi - wall;
+            let rise = (1.0 - (1.0 - self.dent).powi(2)).sqrt() / (0.5 * pitch);
+            quadrics.push(Quadric {
+                center: (-column.center).extend(0.0),
+                map: DMat3::from_diagonal(DVec3::new(1.0 / semi.x, 1.0 / semi.y, rise)),
+            });
+        }
         let corners = Quadric::ellipsoid(
             DVec3::ZERO,
             self.corner * (extent - DVec3::new(wall, wall, 0.0)),
         );
-        Convex {
+        quadrics.push(corners);
+        Some(Convex {
             center: column.center.extend(z),
             half: extent,
             planes,
-            quadrics: vec![outline, corners],
+            quadrics,
             island: false,
-        }
+        })
     }
 }

@@ -142,7 +142,9 @@ fn bubbles(median_um: f64, sigma: f64, air: f64) -> Grain {
 
 /// Share of the medulla that is air, by the chords of a bundle of lines across, evenly spread: bodies
 /// overlap, so that their volumes do not add up.
-pub(super) fn measured_air(bodies: &Bodies, semi: DVec2, period: f64) -> f64 {
+///
+/// * `semi`: of an ellipse that holds the bodies; `area`: the medulla's.
+pub(super) fn measured_air(bodies: &Bodies, semi: DVec2, area: f64, period: f64) -> f64 {
     const LINES: u32 = 4000;
     // Steps of a rank-1 lattice: the plastic number's powers (Roberts 2018).
     let (mut sum, dir) = (0.0, DVec3::X);
@@ -163,6 +165,6 @@ pub(super) fn measured_air(bodies: &Bodies, semi: DVec2, period: f64) -> f64 {
             from = Some(face);
         }
     }
-    // Lines are dense in y by 2 b / LINES over the period; the ellipse's area is pi a b.
-    sum * 2.0 * semi.y / f64::from(LINES) / (PI * semi.x * semi.y)
+    // Lines are dense in y by 2 b / LINES over the period.
+    sum * 2.0 * semi.y / f64::from(LINES) / area
 }

@@ -17,7 +17,7 @@ const JITTER: f64 = 0.13;
 const MARGIN: f64 = 0.42;
 
 /// The cells of one period: Voronoi cells of a jittered body-centered lattice, shrunk by the wall.
-pub(super) fn build(room: &Room, cell_um: f64, wall_um: f64) -> Result<Vec<Convex>, FiberError> {
+pub(super) fn build(room: &Room<'_>, cell_um: f64, wall_um: f64) -> Result<Vec<Convex>, FiberError> {
     let inner = room.semi - MARGIN * cell_um;
     if inner.min_element() <= 0.0 || wall_um >= 0.5 * cell_um {
         return Err(FiberError::CellTooWide {
@@ -57,7 +57,7 @@ pub(super) fn build(room: &Room, cell_um: f64, wall_um: f64) -> Result<Vec<Conve
     Ok(cells(room, &seeds, edge, wall_um))
 }
 
-fn cells(room: &Room, seeds: &[DVec3], edge: f64, wall_um: f64) -> Vec<Convex> {
+fn cells(room: &Room<'_>, seeds: &[DVec3], edge: f64, wall_um: f64) -> Vec<Convex> {
     // Cells at the rim reach far out and meet others far from their own center.
     let near = 3.0 * edge;
     // Seeds in order of z let the search stop early.

@@ -1,5 +1,6 @@
 //! A medulla in pieces: on and off along the hair with log-normal lengths.
 
+use super::edge::{Edge, Part};
 use crate::fiber::convex::{Convex, Plane, Quadric};
 use crate::sampling::Rng;
 use crate::species::Continuity;
@@ -71,8 +72,31 @@ impl Pieces {
 
     /// The pieces as cylinders that overlap, each shorter than half a period.
     pub(super) fn cylinders(&self, semi: DVec2) -> Vec<Convex> {
-        const OVERLAP_UM: f64 = 0.5;
         let outline = Quadric::ellipsoid(DVec3::ZERO, semi.extend(f64::INFINITY));
+        let disc = |half: f64| Convex {
+            half: semi.extend(half),
+            quadrics: vec![outline],
+            ..Convex::default()
+        };
+        self.stacked(&[&disc])
+    }
+
+    /// As much of what an edge holds.
+    pub(super) fn cylinders_within(&self, edge: &Edge) -> Vec<Convex> {
+        let parts = edge.parts();
+        let disc = |part: &Part, half: f64| Convex {
+            half: part.half.extend(half),
+            planes: part.planes(DVec2::ZERO),
+            ..Convex::default()
+        };
+        let discs: Vec<_> = parts.iter().map(|part| move |half| disc(part, half)).collect();
+        let discs: Vec<&dyn Fn(f64) -> Convex> = discs.iter().map(|d| d as _).collect();
+        self.stacked(&discs)
+    }
+
+    /// Discs of given half height, one upon the other.
+    fn stacked(&self, discs: &[&dyn Fn(f64) -> Convex]) -> Vec<Convex> {
+        const OVERLAP_UM: f64 = 0.5;
         let mut all = Vec::new();
         for &[z0, z1] in &self.spans {
             let count = (4.0 * (z1 - z0) / self.period).ceil().max(1.0);
@@ -85,13 +109,12 @@ impl Pieces {
                     normal,
                     offset: half,
                 };
-                all.push(Convex {
-                    center: DVec3::Z * (begin + half),
-                    half: semi.extend(half),
-                    planes: vec![plane(DVec3::Z), plane(DVec3::NEG_Z)],
-                    quadrics: vec![outline],
-                    island: false,
-                });
+                for disc in discs {
+                    let mut disc = disc(half);
+                    disc.center = DVec3::Z * (begin + half);
+                    disc.planes.extend([plane(DVec3::Z), plane(DVec3::NEG_Z)]);
+                    all.push(disc);
+                }
             }
         }
         all

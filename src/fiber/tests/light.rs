@@ -88,18 +88,35 @@ fn the_mean_path_through_keratin_is_that_of_an_even_field() {
     }
 }
 
-/// Where bubbles give way to a medium both send the same light back, from clear to black.
+/// Where cells give way to a medium both send the same light back, from clear to black: bubbles of one
+/// size and of many, polyhedra, columns of cells.
 #[test]
-fn a_medium_and_its_bubbles_have_the_same_albedo() {
-    for (radius_um, air_fraction) in [(1.5, 0.3), (2.0, 0.4)] {
-        let bubbles = round(
-            0.6,
-            MedullaKind::Amorphous {
-                radius_um,
-                air_fraction,
-            },
-        );
-        let stand_in = medulla::equivalent(&bubbles.medulla).unwrap();
+fn a_medium_and_its_cells_have_the_same_albedo() {
+    let amorphous = |radius_um, air_fraction| MedullaKind::Amorphous {
+        radius_um,
+        air_fraction,
+    };
+    let kinds = [
+        amorphous(1.5, 0.3),
+        amorphous(2.0, 0.4),
+        MedullaKind::Froth {
+            radius_um: 1.6,
+            radius_sigma: 0.4,
+            air_fraction: 0.35,
+        },
+        MedullaKind::Lattice {
+            cell_um: 5.0,
+            wall_um: 0.3,
+        },
+        MedullaKind::Multiserial {
+            cell_um: 4.0,
+            pitch_um: 4.0,
+            septum_um: 0.6,
+        },
+    ];
+    for kind in kinds {
+        let cells = round(0.6, kind);
+        let stand_in = medulla::equivalent(&cells.medulla).unwrap();
         let mut medium = round(
             0.6,
             MedullaKind::Medium {
@@ -108,14 +125,14 @@ fn a_medium_and_its_bubbles_have_the_same_albedo() {
             },
         );
         medium.medulla.pigment = stand_in.pigment;
-        let bubbles = Fiber::build(&bubbles, 4).unwrap();
-        assert!(bubbles.void_count() > 100);
+        let cells = Fiber::build(&cells, 4).unwrap();
+        assert!(cells.void_count() > 100);
         let medium = Fiber::build(&medium, 4).unwrap();
-        let (a, b) = (paths(&bubbles, 20_000), paths(&medium, 20_000));
+        let (a, b) = (paths(&cells, 20_000), paths(&medium, 20_000));
         for depth in [0.05, 0.2, 0.8, 3.2] {
             let (x, y) = (albedo(&a, depth / 30.0), albedo(&b, depth / 30.0));
-            eprintln!("a {radius_um}, f {air_fraction}, depth {depth}: {x:.4} {y:.4}");
-            assert!((x / y - 1.0).abs() < 0.05, "{radius_um} {depth}: {x} {y}");
+            eprintln!("{}, depth {depth}: {x:.4} {y:.4}", kind.name());
+            assert!((x / y - 1.0).abs() < 0.05, "{} {depth}: {x} {y}", kind.name());
         }
     }
 }

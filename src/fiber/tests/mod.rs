@@ -1,10 +1,13 @@
 //! Structures like those of real animals, and what every fiber must keep to.
 
 mod kinds;
+mod library;
 mod light;
 mod scales;
 mod sections;
+mod shaped;
 mod shapes;
+mod twist;
 mod walk;
 
 use super::Fiber;
@@ -152,6 +155,7 @@ pub(super) fn all() -> Vec<(&'static str, Fiber)> {
         ("worn bear", worn_bear()),
     ];
     structures.extend(kinds::structures());
+    structures.extend(shaped::structures());
     structures
         .into_iter()
         .map(|(name, s)| (name, Fiber::build(&s, 7).unwrap()))

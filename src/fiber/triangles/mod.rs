@@ -5,8 +5,14 @@
 //! not measured: of all triangles on its way only those count that bound the region it is in, crossed
 //! in the direction that leaves it. So no distance has to tell a surface from itself, and what grazes
 //! an edge that two triangles share crosses one of them.
+//!
+//! Closed surfaces of voids may overlap: what is in any of them is in the void. And they may hold each
+//! other: one that faces inward within another is solid. Then crossings are counted (see [`layers`]).
+//!
+//! Images of a period may be turned about the axis as well as moved along it: a twisted hair.
 
 mod error;
+mod layers;
 mod overlap;
 mod seam;
 mod shear;
@@ -15,12 +21,15 @@ mod solid;
 mod tests;
 mod tile;
 mod topology;
+mod twist;
 
 pub use error::{MeshError, Places};
+use twist::Screw;
+pub(super) use twist::{turned, twisted};
 
 use super::{Element, Hit, HitState, MeshPart, Region};
 use crate::accel::{Accel, Ray};
-use crate::species::{FiberMesh, Medulla, MedullaKind};
+use crate::species::FiberMesh;
 use glam::{DVec2, DVec3};
 use shear::Shear;
 use tile::Triangle;
@@ -40,7 +49,9 @@ pub(super) struct Triangles {
     tile: Vec<Triangle>,
     accel: Accel,
     /// In units of the radius.
-    period: f64,
+    screw: Screw,
+    /// Whether some surfaces overlap or hold others, so that crossings have to be counted.
+    layered: bool,
     pub(super) radius_um: f64,
     /// Volume of the voids over that of the least cylinder about the axis that holds them.
     pub(super) air_fraction: f64,
@@ -52,6 +63,18 @@ pub(super) struct Triangles {
     pub(super) warnings: Vec<String>,
 }
 
+/// Whose mesh it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Maker {
+    /// A designer's: all of it is checked.
+    Designer,
+    /// Our own: surfaces that go through each other are known.
+    Own {
+        /// Whether voids do.
+        overlap: bool,
+    },
+}
+
 /// What of a ray a region's surfaces are.
 struct Search<'a> {
     shear: Shear,
@@ -61,34 +84,54 @@ struct Search<'a> {
     from: Option<u32>,
 }
 
+/// A triangle that a ray meets.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    /// Distance in radii.
+    t: f64,
+    index: usize,
+    enters: bool,
+    /// Periods between its tile and the mesh.
+    image: f64,
+}
+
+/// The part of a ray in one tile, in the place of the mesh.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    origin: DVec3,
+    dir: DVec3,
+    /// Way of the ray before it, to the end of the tile, and a little beyond, in radii.
+    before: f64,
+    length: f64,
+    beyond: f64,
+    /// Periods between its tile and the mesh.
+    image: f64,
+}
+
 impl Triangles {
     /// Checks a mesh and prepares it.
     ///
     /// # Errors
-    /// [`MeshError`] if the surfaces are not closed, cross each other or do not lie in each other.
-    pub(super) fn new(mesh: &FiberMesh, medulla: &Medulla) -> Result<Self, MeshError> {
-        tile::build(mesh, matches!(medulla.kind, MedullaKind::Medium { .. }))
+    ///
+    /// * `is_medium`: whether parts named medulla are a medium rather than voids.
+    /// * `twist`: radians per micrometer by which images are turned about the axis.
+    pub(super) fn new(
+        mesh: &FiberMesh,
+        is_medium: bool,
+        twist: f64,
+        maker: Maker,
+    ) -> Result<Self, MeshError> {
+        tile::build(mesh, is_medium, twist, maker)
     }
 
     /// Length of one period, micrometers.
     pub(super) fn period_um(&self) -> f64 {
-        self.period * self.radius_um
+        self.screw.period * self.radius_um
     }
 
     /// The region that holds a point.
     pub(super) fn region_at(&self, point: DVec3) -> Region {
         self.region_by(point / self.radius_um, &|_| true)
-    }
-
-    /// The side of the first of some triangles in an arbitrary direction.
-    fn region_by(&self, point: DVec3, which: &dyn Fn(&Triangle) -> bool) -> Region {
-        let (sin, cos) = 1.234_567_f64.sin_cos();
-        let dir = DVec3::new(cos, sin, 0.0);
-        let takes = |t: &Triangle, _: bool| which(t);
-        let found = self.first(point, dir, None, &takes);
-        found.map_or(Region::Outside, |(_, index, enters)| {
-            self.tile[index].sides[usize::from(!enters)]
-        })
     }
 
     /// The next boundary of a ray, as [`super::Fiber::next_hit`].
@@ -100,17 +143,25 @@ impl Triangles {
         from: Option<HitState>,
     ) -> Option<Hit> {
         let from = match from.map(|f| f.element) {
-            Some(Element::Triangle { source, .. }) => Some(source),
+            Some(Element::Triangle { source, part }) => Some((source, part)),
             _ => None,
         };
-        let takes = |t: &Triangle, enters: bool| t.sides[usize::from(!enters)] == region;
-        let (t, index, enters) = self.first(origin / self.radius_um, dir, from, &takes)?;
-        let triangle = &self.tile[index];
-        let normal = if enters {
-            triangle.normal
+        let origin = origin / self.radius_um;
+        let found = if self.layered && matches!(region, Region::Void | Region::Medulla) {
+            self.last_of_layers(origin, dir, region, from)?
         } else {
-            -triangle.normal
+            let takes = |t: &Triangle, enters: bool| t.sides[usize::from(!enters)] == region;
+            self.first(origin, dir, from.map(|(source, _)| source), &takes)?
         };
+        let Found {
+            t,
+            index,
+            enters,
+            image,
+        } = found;
+        let triangle = &self.tile[index];
+        let normal = self.screw.turn(triangle.normal, image);
+        let normal = if enters { normal } else { -normal };
         let t = t * self.radius_um;
         Some(Hit {
             t,
@@ -127,14 +178,41 @@ impl Triangles {
         })
     }
 
-    /// The first triangle taken: distance in radii, index, whether it is entered.
+    /// The first triangle taken.
     fn first(
         &self,
         origin: DVec3,
         dir: DVec3,
         from: Option<u32>,
         takes: &dyn Fn(&Triangle, bool) -> bool,
-    ) -> Option<(f64, usize, bool)> {
+    ) -> Option<Found> {
+        self.each_tile(origin, dir, from, |stretch, from| {
+            let Stretch { origin, dir, .. } = *stretch;
+            let search = Search {
+                shear: Shear::new(origin, dir),
+                takes,
+                from,
+            };
+            let (t, index, enters) = self.first_in_tile(origin, dir, stretch.beyond, &search)?;
+            Some(Found {
+                t: stretch.before + t,
+                index,
+                enters,
+                image: stretch.image,
+            })
+        })
+    }
+
+    /// Goes along a ray from tile to tile until `visit` has found something or the ray has left the
+    /// cylinder about the mesh.
+    fn each_tile<T>(
+        &self,
+        origin: DVec3,
+        dir: DVec3,
+        from: Option<u32>,
+        mut visit: impl FnMut(&Stretch, Option<u32>) -> Option<T>,
+    ) -> Option<T> {
+        let period = self.screw.period;
         let (begin, end) = within_unit_cylinder(origin, dir)?;
         let mut before = begin.max(0.0);
         if before >= end {
@@ -142,29 +220,32 @@ impl Triangles {
         }
         // Where it starts decides the tile; beyond that only the direction does.
         let start = origin + before * dir;
-        let mut tile = (start.z / self.period).floor();
+        let mut image = (start.z / period).floor();
         for _ in 0..MOST_TILES {
             let mut local = origin + before * dir;
-            local.z -= tile * self.period;
+            local.z -= image * period;
             let way = |to: f64| match dir.z {
-                dz if dz > 0.0 => (self.period + to - local.z) / dz,
+                dz if dz > 0.0 => (period + to - local.z) / dz,
                 dz if dz < 0.0 => (-to - local.z) / dz,
                 _ => f64::INFINITY,
             };
-            let limit = way(OVERLAP).min(end - before);
-            let search = Search {
-                shear: Shear::new(local, dir),
-                takes,
-                from: from.filter(|_| before <= 0.5 * self.period),
+            let stretch = Stretch {
+                origin: self.screw.turn(local, -image),
+                dir: self.screw.turn(dir, -image),
+                before,
+                length: way(0.0).max(0.0).min(end - before),
+                beyond: way(OVERLAP).min(end - before),
+                image,
             };
-            if let Some((t, index, enters)) = self.first_in_tile(local, dir, limit, &search) {
-                return Some((before + t, index, enters));
+            let found = visit(&stretch, from.filter(|_| before <= 0.5 * period));
+            if found.is_some() {
+                return found;
             }
             before += way(0.0).max(0.0);
             if before >= end {
                 return None;
             }
-            tile += dir.z.signum();
+            image += dir.z.signum();
         }
         None
     }

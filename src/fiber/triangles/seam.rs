@@ -21,7 +21,7 @@ pub(super) fn match_ends(solid: &Solid<'_>) -> Vec<(u32, i32)> {
         }
         let mut pairs: Vec<(f64, u32, u32)> = Vec::new();
         for &v in &rim {
-            let target = solid.points[v as usize] + solid.period * DVec3::Z;
+            let target = solid.screw.image(solid.points[v as usize], 1.0);
             let at = key(target);
             for i in 0..27 {
                 let cell_key = at + I64Vec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);

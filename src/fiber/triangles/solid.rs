@@ -1,7 +1,7 @@
 //! From what a mesh file says to surfaces: points welded, ends joined one period apart.
 
 use super::error::{MeshError, Places};
-use super::seam;
+use super::{Screw, seam};
 use crate::fiber::Part;
 use crate::species::{FiberMesh, MeshEnds, MeshRole};
 use glam::DVec3;
@@ -63,7 +63,7 @@ pub(super) struct Solid<'a> {
     pub(super) faces: Vec<Face>,
     /// The point that each point is an image of, and how many periods above it.
     pub(super) images: Vec<(u32, i32)>,
-    pub(super) period: f64,
+    pub(super) screw: Screw,
     /// Largest distance from the axis, micrometers.
     pub(super) radius_um: f64,
     /// What was subtracted from the points, micrometers.
@@ -73,7 +73,12 @@ pub(super) struct Solid<'a> {
 
 impl<'a> Solid<'a> {
     /// * `is_medium`: whether parts named medulla are a medium rather than voids.
-    pub(super) fn new(source: &'a FiberMesh, is_medium: bool) -> Result<Self, MeshError> {
+    /// * `twist`: radians per micrometer by which images are turned about the axis.
+    pub(super) fn new(
+        source: &'a FiberMesh,
+        is_medium: bool,
+        twist: f64,
+    ) -> Result<Self, MeshError> {
         let raw = source.content.mesh();
         let file = || source.file.clone();
         if raw.triangles.len() > MAX_TRIANGLES {
@@ -127,6 +132,11 @@ impl<'a> Solid<'a> {
             ));
         }
         shift_um.z = period_um * (lo.z / period_um).floor();
+        if twist != 0.0 {
+            // What turns turns about the file's own axis, from where that has it.
+            shift_um = DVec3::ZERO;
+            warnings.clear();
+        }
         let radius_um = outer()
             .map(|p| (p - shift_um).truncate().length())
             .fold(0.0, f64::max);
@@ -136,7 +146,7 @@ impl<'a> Solid<'a> {
             points: Vec::new(),
             faces: Vec::with_capacity(used.len()),
             images: Vec::new(),
-            period: quantized(period_um / radius_um),
+            screw: Screw::new(quantized(period_um / radius_um), twist * period_um),
             radius_um,
             shift_um,
             warnings,
@@ -238,21 +248,25 @@ impl<'a> Solid<'a> {
         });
     }
 
-    /// Moves images exactly one period above what they are images of.
+    /// Moves images exactly to where what they are images of comes to.
     fn snap(&mut self) {
-        for v in 0..self.points.len() {
-            let (base, periods) = self.images[v];
-            if periods != 0 {
-                self.points[v] =
-                    self.points[base as usize] + f64::from(periods) * self.period * DVec3::Z;
-            }
+        for v in 0..self.points.len() as u32 {
+            self.points[v as usize] = self.image(v, 0.0);
         }
+    }
+
+    /// A point so many periods up. Images of one point are the same to the bit, whichever they are
+    /// images of.
+    pub(super) fn image(&self, v: u32, periods: f64) -> DVec3 {
+        let (base, up) = self.images[v as usize];
+        self.screw
+            .image(self.points[base as usize], periods + f64::from(up))
     }
 
     /// Distance within which two points are one: files hold single precision, and numbers rounded
     /// for people.
     pub(super) fn tolerance(&self) -> f64 {
-        1e-4 + 1e-6 * self.period
+        1e-4 + 1e-6 * self.screw.period
     }
 
     /// A point in units and axes of the file.

@@ -5,7 +5,10 @@ use crate::fiber::{Fiber, MeshPart, Region};
 use crate::mesh_file::{LoadedMesh, RawMesh};
 use crate::sampling::Rng;
 use crate::species::{FiberMesh, MeshAxis, MeshEnds, MeshRole, Structure};
+use super::solid::Solid;
+use super::topology::close;
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// The parts of a fiber as if read from a file of single precision.
 fn as_mesh(parts: &[MeshPart], period_um: f64) -> FiberMesh {
@@ -73,4 +76,33 @@ fn own_meshes_are_the_fibers_they_came_from() {
         assert!(differ < n / 200, "{name}: {differ} of {n} differ, {seen:?}");
         assert!(seen[Region::Outside as usize] > 0);
     }
+}
+
+/// Every export of the library is closed in single precision: what is written can be baked.
+#[test]
+fn exports_of_the_library_are_closed() {
+    let all: Vec<_> = crate::species::ids().collect();
+    let wrong: Vec<String> = (all.into_par_iter())
+        .flat_map_iter(|id| {
+            let species = crate::species::load(id, &[]).unwrap();
+            let classes = species.classes.into_iter();
+            classes.flat_map(move |class| {
+                let name = format!("{id} {}", class.name);
+                class.stations.into_iter().map(move |s| (name.clone(), s))
+            })
+        })
+        .filter_map(|(name, station)| {
+            let straight = Structure {
+                twist_turns_per_cm: 0.0,
+                ..station.structure
+            };
+            let fiber = Fiber::build(&straight, 1).unwrap();
+            let mesh = as_mesh(&fiber.mesh(), fiber.period_um());
+            let is_medium = fiber.medulla.medium.is_some();
+            let solid = Solid::new(&mesh, is_medium, 0.0);
+            let closed = solid.and_then(|mut solid| close(&mut solid)).err();
+            closed.map(|error| format!("{name} {}: {error}", station.at))
+        })
+        .collect();
+    assert_eq!(wrong, [""; 0]);
 }

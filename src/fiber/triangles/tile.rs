@@ -4,7 +4,7 @@ use super::error::{MeshError, Places};
 use super::overlap::crossing_pairs;
 use super::solid::{Bound, Solid};
 use super::topology::{Shell, close};
-use super::{OVERLAP, Triangles};
+use super::{Maker, OVERLAP, Screw, Triangles};
 use crate::accel::{Accel, AccelError};
 use crate::fiber::{MeshPart, Part, Region};
 use crate::species::FiberMesh;
@@ -25,16 +25,25 @@ pub(super) struct Triangle {
     pub(super) sides: [Region; 2],
     pub(super) bound: Bound,
     pub(super) part: Part,
-    /// The triangle of the mesh that this is an image of.
+    /// The triangle of the mesh that this is an image of, and the closed surface that it belongs to.
     pub(super) source: u32,
+    pub(super) shell: u32,
 }
 
 /// Checks a mesh and prepares it for tracing.
-pub(super) fn build(mesh: &FiberMesh, is_medium: bool) -> Result<Triangles, MeshError> {
-    let mut solid = Solid::new(mesh, is_medium)?;
-    let (shells, shell_of) = close(&mut solid)?;
-    let mut tile = images(&solid);
-    refuse_crossings(&solid, &tile)?;
+pub(super) fn build(
+    mesh: &FiberMesh,
+    is_medium: bool,
+    twist: f64,
+    maker: Maker,
+) -> Result<Triangles, MeshError> {
+    let mut solid = Solid::new(mesh, is_medium, twist)?;
+    let (mut shells, shell_of) = close(&mut solid)?;
+    let mut tile = images(&solid, &shell_of);
+    let overlap = match maker {
+        Maker::Designer => refuse_crossings(&solid, &tile)?,
+        Maker::Own { overlap } => overlap,
+    };
     let boxes: Vec<(Vec3, Vec3)> = tile.iter().map(|t| box_of(&t.corners)).collect();
     let accel = Accel::build(&boxes).map_err(|error| {
         let at = match error {
@@ -58,24 +67,69 @@ pub(super) fn build(mesh: &FiberMesh, is_medium: bool) -> Result<Triangles, Mesh
             (lo.min(p), hi.max(p))
         });
     let half = 0.5 * solid.radius_um * (hi - lo);
-    let voids = || shells.iter().filter(|s| s.bound == Bound::Void);
     let mut triangles = Triangles {
         accel,
-        period: solid.period,
+        screw: solid.screw,
+        layered: overlap,
         radius_um: solid.radius_um,
-        air_fraction: air_fraction(&solid, voids().map(|s| s.volume).sum()),
-        void_count: voids().count(),
+        air_fraction: 0.0,
+        void_count: 0,
         semi_axes_um: [half.x, half.y],
-        parts: parts(&solid),
-        warnings: std::mem::take(&mut solid.warnings),
+        parts: Vec::new(),
+        warnings: Vec::new(),
         tile,
     };
+    find_islands(&mut solid, &mut shells, &shell_of, &mut triangles);
     nest(&solid, &shells, &shell_of, &mut triangles)?;
+    let voids = || shells.iter().filter(|s| s.bound == Bound::Void);
+    triangles.void_count = voids().filter(|s| !s.inward).count();
+    triangles.air_fraction = air_fraction(&solid, &triangles, voids().map(|s| s.volume).sum());
+    triangles.parts = parts(&solid);
+    triangles.warnings = std::mem::take(&mut solid.warnings);
     Ok(triangles)
 }
 
+/// Surfaces wound inward of which it is found out whether they are islands; a fiber has some dozens.
+const MOST_ISLANDS: usize = 20_000;
+
+/// Which of the surfaces that were wound inward are islands in others of their kind: those stay as
+/// they were. The others were turned, which is said.
+fn find_islands(
+    solid: &mut Solid<'_>,
+    shells: &mut [Shell],
+    shell_of: &[u32],
+    triangles: &mut Triangles,
+) {
+    let mut turned = 0usize;
+    let inward = shells.iter_mut().enumerate().filter(|(_, s)| s.inward);
+    for (count, (index, shell)) in inward.enumerate() {
+        let corner = solid.points[shell.corner as usize];
+        let around = match shell.bound {
+            Bound::Void if count < MOST_ISLANDS => triangles.layers_of_others(corner, shell.bound, index as u32),
+            _ => 0,
+        };
+        shell.inward = around > 0;
+        turned += usize::from(!shell.inward);
+        shell.volume *= if shell.inward { -1.0 } else { 1.0 };
+    }
+    if turned > 0 {
+        let what = if turned == 1 { "surface" } else { "surfaces" };
+        let message = format!("{turned} closed {what} faced inward: turned inside out");
+        solid.warnings.push(message);
+    }
+    let is_island = |shell: u32| shells[shell as usize].inward;
+    triangles.layered |= shells.iter().any(|s| s.inward);
+    for t in triangles.tile.iter_mut().filter(|t| is_island(t.shell)) {
+        t.corners.swap(1, 2);
+        t.normal = -t.normal;
+    }
+    for (face, _) in (solid.faces.iter_mut().zip(shell_of)).filter(|(_, s)| is_island(**s)) {
+        face.corners.swap(1, 2);
+    }
+}
+
 /// All triangles and their images that touch the tile.
-fn images(solid: &Solid<'_>) -> Vec<Triangle> {
+fn images(solid: &Solid<'_>, shell_of: &[u32]) -> Vec<Triangle> {
     let mut tile = Vec::with_capacity(solid.faces.len() * 5 / 4);
     let has_cortex = solid.faces.iter().any(|f| f.bound == Bound::Cortex);
     let under_cuticle = if has_cortex {
@@ -84,28 +138,29 @@ fn images(solid: &Solid<'_>) -> Vec<Triangle> {
         Region::Cortex
     };
     let inside_of = [under_cuticle, Region::Cortex, Region::Medulla, Region::Void];
-    let (lo, hi) = (-2.0 * OVERLAP, solid.period + 2.0 * OVERLAP);
+    let Screw { period, .. } = solid.screw;
+    let (lo, hi) = (-2.0 * OVERLAP, period + 2.0 * OVERLAP);
     for (source, face) in solid.faces.iter().enumerate() {
-        let corners = solid.corners(face);
-        let [a, b, c] = corners;
-        let Some(normal) = (b - a).cross(c - a).try_normalize() else {
-            // Nothing can be hit where there is no area; the edge belongs to both neighbors.
-            continue;
-        };
-        let z = corners.map(|p| p.z);
+        let z = solid.corners(face).map(|p| p.z);
         let (least, most) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
-        let first = ((lo - most) / solid.period).ceil();
-        let last = ((hi - least) / solid.period).floor();
+        let first = ((lo - most) / period).ceil();
+        let last = ((hi - least) / period).floor();
         let mut image = first;
         while image <= last {
-            tile.push(Triangle {
-                corners: corners.map(|p| p + image * solid.period * DVec3::Z),
-                normal,
-                sides: [Region::Outside, inside_of[face.bound as usize]],
-                bound: face.bound,
-                part: face.part,
-                source: source as u32,
-            });
+            let corners = face.corners.map(|v| solid.image(v, image));
+            let [a, b, c] = corners;
+            // Nothing can be hit where there is no area; the edge belongs to both neighbors.
+            if let Some(normal) = (b - a).cross(c - a).try_normalize() {
+                tile.push(Triangle {
+                    corners,
+                    normal,
+                    sides: [Region::Outside, inside_of[face.bound as usize]],
+                    bound: face.bound,
+                    part: face.part,
+                    source: source as u32,
+                    shell: shell_of[source],
+                });
+            }
             image += 1.0;
         }
     }
@@ -120,12 +175,23 @@ fn box_of(corners: &[DVec3; 3]) -> (Vec3, Vec3) {
 /// Depth below which surfaces only touch, in radii: some roundings of single precision.
 const TOUCH: f64 = 1e-6;
 
-fn refuse_crossings(solid: &Solid<'_>, tile: &[Triangle]) -> Result<(), MeshError> {
+/// Whether different surfaces of one kind, voids or pieces of a medium, go through each other; what
+/// is in any of them is inside.
+///
+/// # Errors
+/// Any other surfaces that do, and ones that go through themselves.
+fn refuse_crossings(solid: &Solid<'_>, tile: &[Triangle]) -> Result<bool, MeshError> {
+    let mut overlap = false;
     let corners: Vec<[DVec3; 3]> = tile.iter().map(|t| t.corners).collect();
     let mut found: HashMap<(Bound, Bound), (usize, Places)> = HashMap::new();
-    let tolerance = TOUCH * (1.0 + solid.period);
+    let tolerance = TOUCH * (1.0 + solid.screw.period);
     let counted = crossing_pairs(&corners, tolerance, |a, b| {
         let bounds = [tile[a].bound, tile[b].bound];
+        let may = matches!(bounds[0], Bound::Void | Bound::Medulla) && bounds[0] == bounds[1];
+        if may && tile[a].shell != tile[b].shell {
+            overlap = true;
+            return;
+        }
         let key = (bounds[0].max(bounds[1]), bounds[0].min(bounds[1]));
         let (count, places) = found.entry(key).or_default();
         *count += 1;
@@ -141,7 +207,7 @@ fn refuse_crossings(solid: &Solid<'_>, tile: &[Triangle]) -> Result<(), MeshErro
     }
     let first = found.into_iter().min_by_key(|(key, _)| *key);
     match first {
-        None => Ok(()),
+        None => Ok(overlap),
         Some(((part, other), (count, places))) => Err(MeshError::Crossing {
             file: solid.file(),
             part: part.name(),
@@ -167,7 +233,7 @@ fn nest(
                 continue;
             }
             let corner = solid.points[shell.corner as usize];
-            around[index] = triangles.region_by(corner, &|t| t.bound < bound);
+            around[index] = triangles.region_by(corner, &|other| other < bound);
             if around[index] == Region::Outside {
                 let mut places = Places::default();
                 solid.note(&mut places, &[corner]);
@@ -185,16 +251,32 @@ fn nest(
     Ok(())
 }
 
-fn air_fraction(solid: &Solid<'_>, volume: f64) -> f64 {
+/// Volume of the voids over that of the least cylinder about the axis that holds them.
+///
+/// * `volume`: of all voids, those that overlap counted twice.
+fn air_fraction(solid: &Solid<'_>, triangles: &Triangles, volume: f64) -> f64 {
     let voids = solid.faces.iter().filter(|f| f.bound == Bound::Void);
     let reach = voids
         .flat_map(|f| solid.corners(f))
         .map(|p| p.truncate().length_squared())
         .fold(0.0, f64::max);
-    if reach > 0.0 {
-        volume / (std::f64::consts::PI * reach * solid.period)
-    } else {
+    let period = solid.screw.period;
+    if reach == 0.0 {
         0.0
+    } else if triangles.layered {
+        const POINTS: u32 = 5000;
+        let at = |i: u32| {
+            let i = f64::from(i) + 0.5;
+            // Steps of a rank-1 lattice (Roberts 2018).
+            let [u, v, w] = [0.819_172_513, 0.671_043_607, 0.549_700_478].map(|s| (i * s).fract());
+            let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
+            let r = (v * reach).sqrt();
+            DVec3::new(r * cos, r * sin, w * period)
+        };
+        let is_void = |i: &u32| triangles.region_by(at(*i), &|_| true) == Region::Void;
+        (0..POINTS).filter(is_void).count() as f64 / f64::from(POINTS)
+    } else {
+        volume / (std::f64::consts::PI * reach * period)
     }
 }
 

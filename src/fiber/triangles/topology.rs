@@ -21,8 +21,10 @@ struct Side {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shell {
     pub(super) bound: Bound,
-    /// Enclosed volume of a period, in cubed radii.
+    /// Enclosed volume of a period, in cubed radii; negative for islands.
     pub(super) volume: f64,
+    /// Whether the file winds it inward.
+    pub(super) inward: bool,
     /// A corner of it.
     pub(super) corner: u32,
 }
@@ -38,7 +40,7 @@ pub(super) fn close(solid: &mut Solid<'_>) -> Result<(Vec<Shell>, Vec<u32>), Mes
     let mut shells = Vec::new();
     let mut shell_of = vec![u32::MAX; solid.faces.len()];
     let mut is_turned = vec![false; solid.faces.len()];
-    let (mut turned, mut inward) = (0usize, 0usize);
+    let mut turned = 0usize;
     for start in 0..solid.faces.len() {
         if shell_of[start] != u32::MAX {
             continue;
@@ -79,27 +81,24 @@ pub(super) fn close(solid: &mut Solid<'_>) -> Result<(Vec<Shell>, Vec<u32>), Mes
         let mut volume: f64 = (members.iter())
             .map(|&f| volume_under(solid.corners(&solid.faces[f as usize])))
             .sum();
+        let mut inward = false;
         if volume < 0.0 {
             volume = -volume;
             for &face in &members {
                 solid.faces[face as usize].corners.swap(1, 2);
             }
-            inward += usize::from(2 * turns < members.len());
+            inward = 2 * turns < members.len();
         }
         let face = solid.faces[start];
         shells.push(Shell {
             bound: face.bound,
             volume,
+            inward,
             corner: face.corners[0],
         });
     }
     if turned > 0 {
         let message = format!("{turned} faces were wound against their neighbors: turned");
-        solid.warnings.push(message);
-    }
-    if inward > 0 {
-        let what = if inward == 1 { "surface" } else { "surfaces" };
-        let message = format!("{inward} closed {what} faced inward: turned inside out");
         solid.warnings.push(message);
     }
     Ok((shells, shell_of))

@@ -9,8 +9,9 @@ mod pigment;
 mod structure;
 
 use super::check::{Checked, Item, Value};
-use super::error::{Place, Problems};
+use super::error::{Place, Problems, printable};
 use super::model::{HairClass, Species};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Builds the species of a checked root table.
@@ -29,6 +30,7 @@ pub(crate) fn build(
         problems,
         folder,
         seen: Vec::new(),
+        recipes: BTreeMap::new(),
     };
     let shared = table(root, "structure");
     let skin = table(root, "skin").and_then(|t| numbers(t, "color"));
@@ -66,8 +68,25 @@ pub(crate) fn build(
         summary: text_of(root, "summary")?,
         classes,
         skin_color: skin?.try_into().ok()?,
-        text,
+        text: text + &as_comments(&reader.recipes),
     })
+}
+
+/// Recipes as comments, to stand at the end of the file's text: without the marks they are the files
+/// again.
+fn as_comments(recipes: &BTreeMap<String, String>) -> String {
+    let recipe = |(file, text): (&String, &String)| {
+        let lines = text.lines().map(|line| match line {
+            "" => "#\n".to_owned(),
+            _ => format!("# {line}\n"),
+        });
+        format!(
+            "\n# Pattern {}:\n{}",
+            printable(file),
+            lines.collect::<String>()
+        )
+    };
+    recipes.iter().map(recipe).collect()
 }
 
 /// Reads checked tables and reports what does not fit together.
@@ -75,6 +94,8 @@ pub(super) struct Reader<'a> {
     pub(super) problems: &'a mut Problems,
     /// Where relative paths begin.
     pub(super) folder: &'a Path,
+    /// Texts of the recipes in files of their own, by the paths that name them.
+    pub(super) recipes: BTreeMap<String, String>,
     /// Places of problems that several stations may share. See [`Reader::conflict_once`].
     seen: Vec<Place>,
 }

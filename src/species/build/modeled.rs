@@ -43,7 +43,7 @@ impl Reader<'_> {
             diameter_um: (width * depth).sqrt(),
             aspect: width.max(depth) / width.min(depth),
             section: Section::Ellipse,
-            twist_turns_per_cm: 0.0,
+            twist_turns_per_cm: layers.number_or("twist_turns_per_cm", 0.0),
             ior: ior?,
             cuticle: Cuticle {
                 roughness,

@@ -256,7 +256,10 @@ impl Reader<'_> {
         let place = layers.place("pattern");
         let path = join(&layers.path, "pattern");
         match recipe_of(&self.folder.join(file)) {
-            Ok(pattern) => return Some(pattern),
+            Ok((pattern, text)) => {
+                self.recipes.insert(file.clone(), text);
+                return Some(pattern);
+            }
             Err(PatternError::File(error)) => {
                 let message = format!("`{path}`: {error}");
                 let hint = "the path of a recipe is relative to this file";

@@ -139,7 +139,7 @@ pub(super) static MEDULLA: Shape = Shape {
         ),
         Field::layered(
             "spacing",
-            Kind::Number(number(0.6, 3.0, "")),
+            Kind::Number(number(0.15, 3.0, "")),
             "Globules: mean distance over the medulla's diameter.",
         ),
         Field::layered(

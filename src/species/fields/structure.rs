@@ -36,7 +36,7 @@ pub(super) const MATERIALS_FIELD: Field = Field::optional(
 pub(super) const TWIST: Field = Field::optional(
     "twist_turns_per_cm",
     Kind::Number(number(-20.0, 20.0, "turns per cm")),
-    "Turns of the section about the axis; 0 when left out. Tables average over all rotations.",
+    "Turns of the section about the axis, counterclockwise seen from the tip; 0 when left out.",
 );
 pub(super) const SECTION: Field = Field::optional(
     "section",

@@ -14,8 +14,8 @@ pub struct Structure {
     pub aspect: f64,
     /// Shape of the section.
     pub section: Section,
-    /// Turns of the section about the axis, per centimeter. Tables do not see it: they average over
-    /// all rotations of the fiber, as far as a hair turns within the width of a pixel.
+    /// Turns of the section about the axis, per centimeter; positive counterclockwise seen from the
+    /// tip.
     pub twist_turns_per_cm: f64,
     /// Refractive index of cuticle and cortex, 1..3.
     pub ior: f64,
@@ -199,7 +199,8 @@ pub enum MedullaKind {
     },
     /// One column of globules of random size, a film of air round each.
     Globules {
-        /// Mean distance between globules over the medulla's diameter, 0.6 .. 3.
+        /// Mean distance between globules over the medulla's diameter, 0.15 .. 3; below the
+        /// size of a globule they are discs.
         spacing: f64,
         /// Thickness of the film.
         film_um: f64,

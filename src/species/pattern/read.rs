@@ -25,11 +25,11 @@ pub(crate) enum PatternError {
     Invalid(#[from] SpeciesErrors),
 }
 
-/// The recipe in a file; its name is that of the file.
+/// The recipe in a file, whose name is that of the file, and the text of it.
 ///
 /// # Errors
 /// An unreadable file, or everything that is wrong with it.
-pub(crate) fn recipe_of(path: &Path) -> Result<CuticlePattern, PatternError> {
+pub(crate) fn recipe_of(path: &Path) -> Result<(CuticlePattern, String), PatternError> {
     let refuse = |reason: String| {
         let error = Error::new(ErrorKind::InvalidData, reason);
         PatternError::File(FileError::new("read", path, error))
@@ -42,7 +42,7 @@ pub(crate) fn recipe_of(path: &Path) -> Result<CuticlePattern, PatternError> {
         .map_err(|e| refuse(format!("it is not UTF-8 text: {}", e.utf8_error())))?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let recipe = parse(&text, &name, &path.display().to_string())?;
-    Ok(CuticlePattern::Scales(Box::new(recipe)))
+    Ok((CuticlePattern::Scales(Box::new(recipe)), text))
 }
 
 /// Reads the text of a recipe.

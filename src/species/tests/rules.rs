@@ -338,3 +338,44 @@ fn measured_indices_are_read_beside_the_species_file() {
     let index = structure.materials.cortex.filling.index.unwrap();
     assert!(index[0] < index[1] && index[1] < index[2], "{index:?}");
 }
+
+/// The text that a table keeps holds the recipes in files beside the species': with the marks taken
+/// away they are those files again.
+#[test]
+fn recipes_in_files_are_kept_with_the_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let recipe = include_str!("../../../procedural/patterns/diamond-petal.toml");
+    std::fs::write(folder.path().join("mine.toml"), recipe).unwrap();
+    let file = folder.path().join("animal.toml");
+    std::fs::write(&file, text_of("fox")).unwrap();
+    let file = file.to_string_lossy();
+    let set = ["guard.stations.0.cuticle.pattern=mine.toml".to_owned()];
+    let species = load(&file, &set).unwrap();
+    let station = &species.classes[0].stations[0];
+    assert_eq!(station.structure.cuticle.pattern.name(), "mine");
+
+    let (_, kept) = species.text.split_once("\n# Pattern mine.toml:\n").unwrap();
+    let lines = kept.lines().map(|line| match line.strip_prefix("# ") {
+        Some(line) => line,
+        None => line.strip_prefix('#').unwrap(),
+    });
+    let kept: Vec<&str> = lines.collect();
+    assert_eq!(kept, recipe.lines().collect::<Vec<_>>());
+    // The whole is a species file still, for one who puts the recipe back.
+    let again = parse(&species.text, "fox", &file, &set).unwrap().0;
+    assert_eq!(again.classes[0].stations, species.classes[0].stations);
+
+    // Recipes that are none: refused where they are named, by what is wrong in them.
+    for (bad, expected) in [
+        ("", "missing"),
+        ("generator = \"rows\"\nrise = \"x\"\n", "rise"),
+        ("\u{1}", "not TOML"),
+        (&"[".repeat(200_000), "mine.toml"),
+    ] {
+        std::fs::write(folder.path().join("mine.toml"), bad).unwrap();
+        let errors = load(&file, &set).unwrap_err().to_string();
+        assert!(errors.contains(expected), "{expected}: {errors:.300}");
+    }
+    let gone = ["guard.stations.0.cuticle.pattern=gone.toml".to_owned()];
+    assert!(load(&file, &gone).unwrap_err().to_string().contains("gone.toml"));
+}

@@ -1,0 +1,72 @@
+//! Leaving a fiber whose section is no ellipse: what is inside may lie beyond the largest circle in
+//! it, in the bulges of a dumb-bell, and a straight way to it may lead through the air.
+
+use super::march::{March, Side, StartOn};
+use super::scales::Scales;
+use super::section::UnitRay;
+use super::surface::{Inward, OuterHit, OuterState, outer_hit};
+
+impl Scales {
+    /// As [`super::surface::Surface::leave`], with `core` asked for all of the ray within the fiber.
+    pub(super) fn leave_around<T>(
+        &self,
+        ray: &UnitRay,
+        from: Option<OuterState>,
+        mut core: impl FnMut(f64, f64) -> Option<(f64, T)>,
+    ) -> Inward<(f64, T)> {
+        let outer = ray.inside_circle(self.rho_max);
+        let end = outer.map_or(0.0, |(_, t1)| t1.max(0.0));
+        // What is inside is near, as a rule; a ray along the axis is not followed for all of its way.
+        let near = end.min(self.period);
+        let first = core(0.0, near);
+        // Beyond the first thing inside nothing counts.
+        let limit = first.as_ref().map_or(end, |(t, _)| *t);
+        let leaves = self.leave_before(ray, from, limit);
+        match (leaves, first) {
+            (Leaves::Outer(hit), first) if hit.t <= near || first.is_some() => Inward::Outer(hit),
+            (Leaves::Outer(hit), _) => match core(near, hit.t) {
+                Some(core) => Inward::Core(core),
+                None => Inward::Outer(hit),
+            },
+            (Leaves::Not, Some(first)) => Inward::Core(first),
+            (Leaves::Never, first) => first
+                .or_else(|| core(near, f64::INFINITY))
+                .map_or(Inward::Lost, Inward::Core),
+            (Leaves::Not | Leaves::Lost, _) => Inward::Lost,
+        }
+    }
+
+    /// Where a ray inside leaves the fiber up to `limit`.
+    fn leave_before(&self, ray: &UnitRay, from: Option<OuterState>, limit: f64) -> Leaves {
+        let inner = ray.inside_circle(self.rho_min).filter(|&(_, t1)| t1 > 0.0);
+        if ray.c >= self.rho_min * self.rho_min || inner.is_none() {
+            let (cell, on) = self.start(ray, 0.0, from, Side::Inside);
+            let stop = inner.map_or(limit, |(t0, _)| t0.max(0.0).min(limit));
+            match self.march(ray, 0.0, cell, Side::Inside, on, stop) {
+                March::Through => {}
+                march => return outer_hit(march).map_or(Leaves::Lost, Leaves::Outer),
+            }
+        }
+        // The circle inside lies within all scales.
+        let far = match inner {
+            Some((_, f64::INFINITY)) => return Leaves::Never,
+            Some((_, t1)) if t1 < limit => t1,
+            _ => return Leaves::Not,
+        };
+        let cell = self.locate(ray.at(far));
+        match self.march(ray, far, cell, Side::Inside, StartOn::Nothing, limit) {
+            March::Through => Leaves::Not,
+            march => outer_hit(march).map_or(Leaves::Lost, Leaves::Outer),
+        }
+    }
+}
+
+/// What becomes of a ray on its way out.
+enum Leaves {
+    Outer(OuterHit),
+    /// Not up to the limit.
+    Not,
+    /// It runs along the axis.
+    Never,
+    Lost,
+}
