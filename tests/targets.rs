@@ -314,39 +314,3 @@ fn otter_wool_has_four_fins_a_level_and_turns_them_by_45_degrees() {
     assert!(correlation(1) < -0.5, "{}", correlation(1));
     assert!(correlation(2) > 0.5, "{}", correlation(2));
 }
-
-#[test]
-#[ignore = "explores"]
-fn explore_tt() {
-    let bear = structure("polar-bear", "guard", 1);
-    let mut froth = bear.clone();
-    froth.medulla.ratio = 0.8;
-    let mut none = froth.clone();
-    none.medulla = Default::default();
-    for (name, fiber) in [
-        ("none", none),
-        ("froth", froth),
-        ("hare", structure("hare", "guard", 1)),
-        ("deer", structure("deer", "guard", 0)),
-    ] {
-        let flights = flights(&fiber, 20.0, 20_000);
-        let n = flights.len() as f64;
-        let at = |f: &Flight, az: f64, cone: f64| {
-            escaped(f).is_some_and(|w| {
-                (frame::theta_of(w) + f.theta).to_degrees().abs() < cone && azimuth(w) > 180.0 - az
-            })
-        };
-        let share = |az: f64, cone: f64| flights.iter().filter(|f| at(f, az, cone)).count() as f64 / n;
-        let mut events = [0u32; 12];
-        for f in flights.iter().filter(|f| at(f, 15.0, 15.0)) {
-            events[(f.events as usize / 2).min(11)] += 1;
-        }
-        let mut azimuths = [0.0; 12];
-        for f in &flights {
-            if let Some(w) = escaped(f) {
-                azimuths[(azimuth(w) / 15.0).min(11.0) as usize] += 100.0 / n;
-            }
-        }
-        eprintln!("{name}: 15x15 {:.4} 5x5 {:.4} 2x2 {:.4} 15x90 {:.4}; events/2 {events:?}; azimuth {azimuths:.1?}", share(15.0, 15.0), share(5.0, 5.0), share(2.0, 2.0), share(15.0, 200.0));
-    }
-}

@@ -44,8 +44,8 @@ use optics::OpticalParts;
 use pattern::Pattern;
 use scales::Scales;
 use section::Section;
-use surface::{OuterState, Surface};
 use std::f64::consts::TAU;
+use surface::{OuterState, Surface};
 use triangles::{Maker, Triangles, turned, twisted};
 
 /// A boundary met by a ray.

@@ -153,7 +153,12 @@ impl Recipe<'_> {
 
     /// One round: overlapping pairs step apart, spheres outside step in. The longest way that one
     /// moved, and the greatest overlap before, as a share of the radius.
-    fn push_apart(&self, spheres: &mut [Sphere], pairs: &[(u32, u32)], wall: &Wall<'_>) -> (f64, f64) {
+    fn push_apart(
+        &self,
+        spheres: &mut [Sphere],
+        pairs: &[(u32, u32)],
+        wall: &Wall<'_>,
+    ) -> (f64, f64) {
         let mut worst = 0.0f64;
         let before: Vec<DVec3> = spheres.iter().map(|s| s.center).collect();
         for &(i, j) in pairs {

@@ -16,7 +16,11 @@ const WALL_UM: f64 = 0.3;
 const BLUNT: f64 = 1.5;
 
 /// The films of one period, each with an island inside.
-pub(super) fn build(room: &Room<'_>, spacing: f64, film_um: f64) -> Result<Vec<Convex>, FiberError> {
+pub(super) fn build(
+    room: &Room<'_>,
+    spacing: f64,
+    film_um: f64,
+) -> Result<Vec<Convex>, FiberError> {
     let width = 2.0 * (room.semi.x * room.semi.y).sqrt();
     let count = (room.period / (spacing * width)).round().max(3.0) as usize;
     let pitch = room.period / count as f64;

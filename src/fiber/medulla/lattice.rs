@@ -17,7 +17,11 @@ const JITTER: f64 = 0.13;
 const MARGIN: f64 = 0.42;
 
 /// The cells of one period: Voronoi cells of a jittered body-centered lattice, shrunk by the wall.
-pub(super) fn build(room: &Room<'_>, cell_um: f64, wall_um: f64) -> Result<Vec<Convex>, FiberError> {
+pub(super) fn build(
+    room: &Room<'_>,
+    cell_um: f64,
+    wall_um: f64,
+) -> Result<Vec<Convex>, FiberError> {
     let inner = room.semi - MARGIN * cell_um;
     if inner.min_element() <= 0.0 || wall_um >= 0.5 * cell_um {
         return Err(FiberError::CellTooWide {

@@ -89,7 +89,10 @@ impl Pieces {
             planes: part.planes(DVec2::ZERO),
             ..Convex::default()
         };
-        let discs: Vec<_> = parts.iter().map(|part| move |half| disc(part, half)).collect();
+        let discs: Vec<_> = parts
+            .iter()
+            .map(|part| move |half| disc(part, half))
+            .collect();
         let discs: Vec<&dyn Fn(f64) -> Convex> = discs.iter().map(|d| d as _).collect();
         self.stacked(&discs)
     }

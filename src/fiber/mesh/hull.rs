@@ -30,9 +30,18 @@ struct Rays<'a> {
 ///
 /// * `round`: rays once round, a multiple of 4.
 /// * `to_unit`: from micrometers to the frame of the part.
-pub(super) fn add(weld: &mut Weld, shape: &Shape<'_>, round: usize, to_unit: impl Fn(DVec3) -> DVec3) {
+pub(super) fn add(
+    weld: &mut Weld,
+    shape: &Shape<'_>,
+    round: usize,
+    to_unit: impl Fn(DVec3) -> DVec3,
+) {
     let poles = round / 2;
-    let rays = Rays { shape, round, poles };
+    let rays = Rays {
+        shape,
+        round,
+        poles,
+    };
     let places: Vec<Vec<Place>> = (0..=poles)
         .map(|i| (0..round).map(|j| rays.place(i as f64, j as f64)).collect())
         .collect();
@@ -93,12 +102,8 @@ impl Rays<'_> {
 
     /// Where on the way from one ray to the next the face is another.
     fn change(&self, [i, j]: [usize; 2], [di, dj]: [usize; 2], face: u32) -> DVec3 {
-        let at = |share: f64| {
-            self.place(
-                i as f64 + share * di as f64,
-                j as f64 + share * dj as f64,
-            )
-        };
+        let at =
+            |share: f64| self.place(i as f64 + share * di as f64, j as f64 + share * dj as f64);
         let (mut same, mut other) = (0.0, 1.0);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (same + other);

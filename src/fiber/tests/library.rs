@@ -100,7 +100,11 @@ pub(super) fn keeps_its_distance(name: &str, fiber: &Fiber, least: f64, rays: u6
         let p = origin + hit.t * dir;
         for _ in 0..6 {
             let (u, v) = (2.0 * rng.uniform() - 1.0, TAU * rng.uniform());
-            let way = DVec3::new((1.0 - u * u).sqrt() * v.cos(), (1.0 - u * u).sqrt() * v.sin(), u);
+            let way = DVec3::new(
+                (1.0 - u * u).sqrt() * v.cos(),
+                (1.0 - u * u).sqrt() * v.sin(),
+                u,
+            );
             // The lowest of the cuticle is known between its lines to some hundredths of a micrometer.
             let q = p + (least - 0.05) * rng.uniform().cbrt() * way;
             assert_ne!(fiber.region_at(q), Region::Void, "{name}: {p} {q}");
@@ -175,6 +179,9 @@ fn chords_in_every_medulla_of_the_library_follow_cauchy() {
             return;
         }
         let (mean, expected) = chords(fiber, 4000);
-        assert!((mean / expected - 1.0).abs() < 0.1, "{name}: {mean} {expected}");
+        assert!(
+            (mean / expected - 1.0).abs() < 0.1,
+            "{name}: {mean} {expected}"
+        );
     });
 }

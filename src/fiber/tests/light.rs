@@ -132,7 +132,11 @@ fn a_medium_and_its_cells_have_the_same_albedo() {
         for depth in [0.05, 0.2, 0.8, 3.2] {
             let (x, y) = (albedo(&a, depth / 30.0), albedo(&b, depth / 30.0));
             eprintln!("{}, depth {depth}: {x:.4} {y:.4}", kind.name());
-            assert!((x / y - 1.0).abs() < 0.05, "{} {depth}: {x} {y}", kind.name());
+            assert!(
+                (x / y - 1.0).abs() < 0.05,
+                "{} {depth}: {x} {y}",
+                kind.name()
+            );
         }
     }
 }

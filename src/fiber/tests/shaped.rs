@@ -171,7 +171,10 @@ fn chords_follow_cauchy_in_every_shape() {
             continue;
         }
         let (mean, expected) = chords(&fiber, 6000);
-        assert!((mean / expected - 1.0).abs() < 0.06, "{name}: {mean} {expected}");
+        assert!(
+            (mean / expected - 1.0).abs() < 0.06,
+            "{name}: {mean} {expected}"
+        );
     }
 }
 

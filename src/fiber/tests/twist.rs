@@ -139,8 +139,14 @@ fn no_ray_is_lost_in_a_twisted_fiber() {
         eprintln!("{name}: {} segments, {} lost", tally.segments, tally.lost);
         assert!(tally.segments > 3000, "{name}");
         assert_eq!(tally.lost, 0, "{name}");
-        assert!(tally.wrong_between as f64 <= 1e-5 * tally.segments as f64, "{name}");
-        assert!(tally.wrong_sides as f64 <= 1e-4 * tally.segments as f64 + 2.0, "{name}");
+        assert!(
+            tally.wrong_between as f64 <= 1e-5 * tally.segments as f64,
+            "{name}"
+        );
+        assert!(
+            tally.wrong_sides as f64 <= 1e-4 * tally.segments as f64 + 2.0,
+            "{name}"
+        );
     }
 }
 

@@ -50,9 +50,8 @@ impl Triangles {
             self.layers(origin, dir, bound)
         };
         self.each_tile(origin, dir, from, |stretch, from| {
-            let counts = |t: &Triangle, enters: bool| {
-                t.bound == bound || (enters && t.sides[0] == region)
-            };
+            let counts =
+                |t: &Triangle, enters: bool| t.bound == bound || (enters && t.sides[0] == region);
             for c in self.crossings(stretch.origin, stretch.dir, stretch.length, from, &counts) {
                 let found = Found {
                     t: stretch.before + c.t,

@@ -1,12 +1,12 @@
 //! Meshes that are fibers, and meshes that are not.
 
+use super::solid::Solid;
+use super::topology::close;
 use crate::fiber::tests::all;
 use crate::fiber::{Fiber, MeshPart, Region};
 use crate::mesh_file::{LoadedMesh, RawMesh};
 use crate::sampling::Rng;
 use crate::species::{FiberMesh, MeshAxis, MeshEnds, MeshRole, Structure};
-use super::solid::Solid;
-use super::topology::close;
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -105,7 +105,9 @@ fn find_islands(
     for (count, (index, shell)) in inward.enumerate() {
         let corner = solid.points[shell.corner as usize];
         let around = match shell.bound {
-            Bound::Void if count < MOST_ISLANDS => triangles.layers_of_others(corner, shell.bound, index as u32),
+            Bound::Void if count < MOST_ISLANDS => {
+                triangles.layers_of_others(corner, shell.bound, index as u32)
+            }
             _ => 0,
         };
         shell.inward = around > 0;

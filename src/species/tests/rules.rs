@@ -377,5 +377,10 @@ fn recipes_in_files_are_kept_with_the_text() {
         assert!(errors.contains(expected), "{expected}: {errors:.300}");
     }
     let gone = ["guard.stations.0.cuticle.pattern=gone.toml".to_owned()];
-    assert!(load(&file, &gone).unwrap_err().to_string().contains("gone.toml"));
+    assert!(
+        load(&file, &gone)
+            .unwrap_err()
+            .to_string()
+            .contains("gone.toml")
+    );
 }
