@@ -8,8 +8,11 @@ mod compare;
 mod dye;
 mod error;
 mod exr;
+mod fit;
+mod lowrank;
 mod maps;
 mod nodes;
+mod pack;
 mod plot;
 mod scatter;
 mod structure;
@@ -21,9 +24,11 @@ pub use compare::{
     BinDifference, ChannelComparison, Comparison, Difference, THETA_MAX_DEG, TableRef, compare,
 };
 pub use error::TableError;
+pub use fit::{Fit, LobeFit, Model};
 pub use maps::ScatterMaps;
 pub use nodes::{Mode, Nodes};
-pub use plot::{DifferencePlot, Plot, draw_lobe};
+pub use pack::{PackedTable, Packing};
+pub use plot::{DifferencePlot, Plot, SmoothCylinder, draw_lobe};
 pub use scatter::{Lobe, ScatterTable};
 pub use structure::{Ledger, PHOTON, Provenance, StructureTable};
 pub use undyed::Undyed;

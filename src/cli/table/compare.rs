@@ -106,7 +106,7 @@ fn json(compared: &Comparison) -> Value {
     })
 }
 
-fn difference_json(difference: &Difference) -> Value {
+pub(super) fn difference_json(difference: &Difference) -> Value {
     json!({
         "error": difference.error,
         "noise": difference.noise,
@@ -181,7 +181,7 @@ fn percents(d: &Difference) -> String {
 }
 
 /// A share in eight columns.
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     match 100.0 * share {
         0.0 => format!("{:>8}", "0 %"),
         p if p < 0.1 => format!("{p:>6.4} %"),

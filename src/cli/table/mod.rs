@@ -1,8 +1,10 @@
-//! `vair table`: what is in a table, dye it, draw it, compare it.
+//! `vair table`: what is in a table; dye, draw, compare, pack and fit it.
 
 mod compare;
 mod dye;
+mod fit;
 mod info;
+mod pack;
 mod plot;
 
 use super::{Console, Failure};
@@ -24,6 +26,10 @@ enum Command {
     Dye(dye::Args),
     /// Tell how far a table is from another: relative L2, by bin, without noise.
     Compare(compare::Args),
+    /// Make a table small: half floats, fold, few images, quadtrees; tells size and error.
+    Pack(pack::Args),
+    /// Fit hair shaders in closed form to a table and tell how well they do, per lobe.
+    Fit(fit::Args),
     /// Draw the scattering for one incidence: sphere map, lobe, albedo.
     Plot(plot::Args),
 }
@@ -34,6 +40,8 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Command::Info(args) => info::run(args),
         Command::Dye(args) => dye::run(args, console),
         Command::Compare(args) => compare::run(args, console),
+        Command::Pack(args) => pack::run(args, console),
+        Command::Fit(args) => fit::run(args, console),
         Command::Plot(args) => plot::run(args, console),
     }
 }

@@ -4,7 +4,10 @@ use super::dye::Pigment;
 use crate::blame::Blame;
 use crate::cli::{Console, Failure};
 use crate::io::check_writable;
-use crate::table::{Mode, Plot, Provenance, ScatterMaps, StructureTable, TableError, TableFile};
+use crate::species;
+use crate::table::{
+    Mode, Plot, Provenance, ScatterMaps, SmoothCylinder, StructureTable, TableError, TableFile,
+};
 use std::path::PathBuf;
 
 /// Options of `vair table plot`.
@@ -63,6 +66,7 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     let plot = Plot {
         maps,
         gray: subject.gray,
+        closed_form: closed_form(maps),
         incidence_deg: args.incidence,
         title: format!("{}, incidence {}°", name(&maps.provenance), args.incidence),
         subtitle: format!(
@@ -111,6 +115,32 @@ impl Subject {
             },
         })
     }
+}
+
+/// The closed form of the fiber that a table comes from, if it is a smooth bare cylinder: alike in all
+/// but size and index to the built-in one.
+fn closed_form(maps: &ScatterMaps) -> Option<SmoothCylinder> {
+    let provenance = &maps.provenance;
+    let text = &provenance.species_text;
+    // Overrides stand at the end as comments.
+    let overrides = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("# --set "));
+    let overrides: Vec<String> = overrides.map(str::to_owned).collect();
+    let (species, _) = species::parse(text, &provenance.species, "species", &overrides).ok()?;
+    let class = species
+        .classes
+        .iter()
+        .find(|c| c.name == provenance.class)?;
+    let structure = class.structure_at(provenance.station)?;
+    let same = format!("structure.ior={}", structure.ior);
+    let glass = species::load("glass-cylinder", &[same]).ok()?;
+    let mut glass = glass.classes.first()?.structure_at(0.5)?;
+    glass.diameter_um = structure.diameter_um;
+    (glass == structure).then(|| SmoothCylinder {
+        eta: structure.ior,
+        tau: maps.absorption_per_um.map(|a| a * maps.radius_um),
+    })
 }
 
 fn name(provenance: &Provenance) -> String {

@@ -20,11 +20,11 @@ mod side;
 #[cfg(test)]
 mod tests;
 
+pub(super) use side::Side;
 pub use side::TableRef;
 
 use super::TableError;
 use measure::Sums;
-use side::Side;
 
 /// Inclination limit that is usual here, degrees: beyond it S grows without bound toward grazing and
 /// a few texels decide.

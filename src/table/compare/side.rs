@@ -70,7 +70,7 @@ impl TableRef<'_> {
     }
 
     /// Photons over all nodes.
-    pub(in crate::table) fn photons(&self) -> f64 {
+    pub fn photons(&self) -> f64 {
         match self {
             Self::Structure(table) => {
                 let ledgers = table.ledger.iter().step_by(table.levels.len().max(1));
@@ -80,7 +80,7 @@ impl TableRef<'_> {
         }
     }
 
-    pub(super) fn albedo(&self, node: usize, channel: usize) -> f64 {
+    pub(in crate::table) fn albedo(&self, node: usize, channel: usize) -> f64 {
         match self {
             Self::Structure(table) => table.albedo(node, channel),
             Self::Scatter(maps) => maps.albedo(node)[channel],
@@ -89,18 +89,18 @@ impl TableRef<'_> {
 }
 
 /// A table with the channels that take part.
-pub(super) struct Side<'a> {
-    pub(super) table: TableRef<'a>,
-    pub(super) cube: Unicube,
+pub(in crate::table) struct Side<'a> {
+    pub(in crate::table) table: TableRef<'a>,
+    pub(in crate::table) cube: Unicube,
     /// The table's own number of each channel.
-    pub(super) channels: Vec<usize>,
+    pub(in crate::table) channels: Vec<usize>,
     /// Per channel of a structure table, how the flux at twice its optical depth follows from two
     /// levels: the lower one, the other one, and the share of the other in the logarithm.
     doubled: Vec<(usize, usize, f32)>,
 }
 
 impl<'a> Side<'a> {
-    pub(super) fn new(table: TableRef<'a>, channels: Vec<usize>) -> Self {
+    pub(in crate::table) fn new(table: TableRef<'a>, channels: Vec<usize>) -> Self {
         let doubled = match table {
             TableRef::Structure(t) => channels.iter().map(|&c| double(&t.levels, c)).collect(),
             TableRef::Scatter(_) => Vec::new(),
@@ -120,7 +120,7 @@ impl<'a> Side<'a> {
     /// level times the transmittance at `2 tau`. A dyed table's channels are taken to have the
     /// relative error of the table that they were dyed from, which is a little too low where they
     /// are dark.
-    pub(super) fn flux(&self, channel: usize, node: usize, texel: usize) -> (f64, f64) {
+    pub(in crate::table) fn flux(&self, channel: usize, node: usize, texel: usize) -> (f64, f64) {
         match self.table {
             TableRef::Structure(t) => {
                 let texels = self.cube.texels();

@@ -24,11 +24,7 @@ pub(super) fn table(parts: Vec<Part>) -> Result<TableFile, TableError> {
             "its texel warp is {warp:?}, not \"unicube\""
         )));
     }
-    let mode = match head.get_text("mode")? {
-        "paper" => Mode::Paper,
-        "cone" => Mode::Cone,
-        other => return Err(wrong(format!("its mode is {other:?}"))),
-    };
+    let mode = mode(&head)?;
     let res = first.res;
     let (bins, face): (usize, usize) = (head.get_int("bins")?, head.get_int("face")?);
     if bins != parts.len() || face != res {
@@ -149,12 +145,29 @@ fn nodes(mode: Mode, parts: &[Part]) -> Result<Nodes, TableError> {
         nodes.edges.push(to.min(FRAC_PI_2));
         nodes.centers.push(center);
     }
-    let own = Nodes::new(mode, parts.len());
+    Ok(own_nodes(mode, nodes.edges, nodes.centers))
+}
+
+/// Nodes of the angles, the program's own to the last bit if they are that.
+pub(super) fn own_nodes(mode: Mode, edges: Vec<f64>, centers: Vec<f64>) -> Nodes {
+    let own = Nodes::new(mode, centers.len());
     let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
-    if near(&nodes.edges, &own.edges) && near(&nodes.centers, &own.centers) {
-        return Ok(own);
+    if near(&edges, &own.edges) && near(&centers, &own.centers) {
+        return own;
     }
-    Ok(nodes)
+    Nodes {
+        mode,
+        edges,
+        centers,
+    }
+}
+
+pub(super) fn mode(head: &Attributes) -> Result<Mode, TableError> {
+    match head.get_text("mode")? {
+        "paper" => Ok(Mode::Paper),
+        "cone" => Ok(Mode::Cone),
+        other => Err(wrong(format!("its mode is {other:?}"))),
+    }
 }
 
 fn ledger(attributes: &Attributes, count: usize) -> Result<Vec<Ledger>, TableError> {
@@ -173,7 +186,7 @@ fn ledger(attributes: &Attributes, count: usize) -> Result<Vec<Ledger>, TableErr
     Ok((0..count).map(entry).collect())
 }
 
-fn provenance(head: &Attributes) -> Result<Provenance, TableError> {
+pub(super) fn provenance(head: &Attributes) -> Result<Provenance, TableError> {
     Ok(Provenance {
         species: head.get_text("species")?.to_owned(),
         class: head.get_text("class")?.to_owned(),

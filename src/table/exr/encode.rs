@@ -82,14 +82,18 @@ fn parts(
     head.int("bins", nodes.len());
     head.int("face", res);
     head.text("warp", "unicube");
+    put_mode(head, nodes.mode);
+    parts
+}
+
+pub(super) fn put_mode(head: &mut Attributes, mode: Mode) {
     head.text(
         "mode",
-        match nodes.mode {
+        match mode {
             Mode::Paper => "paper",
             Mode::Cone => "cone",
         },
     );
-    parts
 }
 
 fn put_ledger(attributes: &mut Attributes, ledger: &[Ledger]) {
@@ -102,7 +106,7 @@ fn put_ledger(attributes: &mut Attributes, ledger: &[Ledger]) {
     attributes.list("lost", ledger.iter().map(|l| l.lost));
 }
 
-fn put_provenance(head: &mut Attributes, provenance: &Provenance) {
+pub(super) fn put_provenance(head: &mut Attributes, provenance: &Provenance) {
     head.text("species", &provenance.species);
     head.text("class", &provenance.class);
     head.double("station", provenance.station);

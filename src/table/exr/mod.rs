@@ -7,9 +7,13 @@
 mod attributes;
 mod decode;
 mod encode;
+mod packed;
 mod parts;
+mod raw;
 
-use super::{ScatterMaps, StructureTable, TableError};
+pub(super) use packed::encode_packed;
+
+use super::{PackedTable, ScatterMaps, StructureTable, TableError};
 use crate::io::{AtomicFile, read_bounded};
 use std::path::Path;
 
@@ -29,12 +33,18 @@ pub enum TableFile {
 }
 
 impl TableFile {
-    /// Reads a table of either kind. Refuses files that are not tables, of another format version,
+    /// Reads a table of either kind, packed or not. Refuses files that are not tables, of another format version,
     /// larger than the limits, or inconsistent.
     pub fn read(path: &Path) -> Result<Self, TableError> {
         let bytes = read_bounded(path, MAX_FILE)?;
-        let parts = parts::decode(&bytes, path)?;
-        decode::table(parts).map_err(|e| e.of_file(path))
+        let raw = parts::decode_raw(&bytes, path)?;
+        let format = raw.first().map(|p| p.attributes.get_int::<i32>("format"));
+        let table = if matches!(format, Some(Ok(packed::FORMAT))) {
+            packed::decode_packed(raw).and_then(|packed| packed.unpack())
+        } else {
+            parts::from_raw(raw).and_then(decode::table)
+        };
+        table.map_err(|e| e.of_file(path))
     }
 
     /// Writes the table: the file appears complete or not at all, and the same table gives the
@@ -63,6 +73,29 @@ impl StructureTable {
     pub fn write(&self, path: &Path) -> Result<(), TableError> {
         self.check()?;
         let bytes = parts::encode(encode::structure(self), path)?;
+        Ok(AtomicFile::write_all_to(path, &bytes)?)
+    }
+}
+
+impl PackedTable {
+    /// Reads a packed table as it is; [`TableFile::read`] unpacks as well. Refuses what that refuses, and
+    /// tables that are not packed.
+    pub fn read(path: &Path) -> Result<Self, TableError> {
+        let bytes = read_bounded(path, MAX_FILE)?;
+        let raw = parts::decode_raw(&bytes, path)?;
+        let format = raw.first().map(|p| p.attributes.get_int::<i32>("format"));
+        if !matches!(format, Some(Ok(packed::FORMAT))) {
+            return Err(TableError::NotTable {
+                path: path.to_owned(),
+                what: "it is not packed".to_owned(),
+            });
+        }
+        packed::decode_packed(raw).map_err(|e| e.of_file(path))
+    }
+
+    /// Writes the table. See [`TableFile::write`].
+    pub fn write(&self, path: &Path) -> Result<(), TableError> {
+        let bytes = encode_packed(self, path)?;
         Ok(AtomicFile::write_all_to(path, &bytes)?)
     }
 }

@@ -1,17 +1,11 @@
 //! Albedo over the inclination of the query direction.
 
 use super::text::{Pen, degrees};
-use super::{Area, FAINT, INK, Plot};
+use super::{Area, CHANNELS, FAINT, INK, Plot};
 use crate::image::Canvas;
 use crate::table::{Mode, ScatterMaps};
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 use std::f64::consts::{FRAC_PI_2, PI};
-
-const CHANNELS: [Vec3; 3] = [
-    Vec3::new(0.80, 0.20, 0.17),
-    Vec3::new(0.16, 0.55, 0.24),
-    Vec3::new(0.16, 0.33, 0.75),
-];
 
 pub(super) fn draw(canvas: &mut Canvas, pen: &Pen, area: Area, maps: &ScatterMaps, plot: &Plot) {
     let line = pen.line();

@@ -1,7 +1,8 @@
-//! Pictures of a scattering function: the sphere of directions as a map, the lobe in space and the
-//! albedo over inclination, for one inclination of the query direction.
+//! Pictures of a scattering function for one inclination of the query direction: the sphere of
+//! directions as a map, the lobe in space, the light by azimuth, and the albedo over inclination.
 
 mod albedo;
+mod azimuth;
 mod colormap;
 mod difference;
 mod frame3d;
@@ -9,9 +10,10 @@ mod lobe;
 mod sphere_map;
 mod text;
 
+pub use azimuth::SmoothCylinder;
 pub use difference::DifferencePlot;
 
-use super::{ScatterMaps, ScatterTable, TableError};
+use super::{Mode, ScatterMaps, ScatterTable, TableError};
 use crate::image::{Canvas, GLYPH_HEIGHT};
 use crate::math::frame;
 use glam::{DVec3, Vec2, Vec3};
@@ -30,6 +32,13 @@ const PAPER: Vec3 = Vec3::new(0.985, 0.98, 0.97);
 const INK: Vec3 = Vec3::new(0.13, 0.14, 0.17);
 const FAINT: Vec3 = Vec3::new(0.62, 0.63, 0.66);
 
+/// Inks of R, G and B.
+const CHANNELS: [Vec3; 3] = [
+    Vec3::new(0.80, 0.20, 0.17),
+    Vec3::new(0.16, 0.55, 0.24),
+    Vec3::new(0.16, 0.33, 0.75),
+];
+
 /// What to draw.
 #[derive(Clone, Debug)]
 pub struct Plot<'a> {
@@ -43,6 +52,8 @@ pub struct Plot<'a> {
     pub title: String,
     /// Second line.
     pub subtitle: String,
+    /// The closed form to draw beside the azimuthal cut, if the fiber has one.
+    pub closed_form: Option<SmoothCylinder>,
     /// Width and height in pixels, at least 640 x 400.
     pub size: (usize, usize),
 }
@@ -105,9 +116,14 @@ impl Plot<'_> {
             max: Vec2::new(split - margin, size.y - 0.5 * margin),
         };
         albedo::draw(&mut canvas, &pen, albedo_area, maps, self);
+        let azimuth_area = Area {
+            min: Vec2::new(split, floor + 1.5 * pen.line()),
+            max: Vec2::new(size.x - 0.5 * margin, size.y - 0.5 * margin),
+        };
+        azimuth::draw(&mut canvas, &pen, azimuth_area, &field, self);
         let lobe_area = Area {
             min: Vec2::new(split, top),
-            max: size - 0.5 * margin,
+            max: Vec2::new(size.x - 0.5 * margin, floor),
         };
         lobe::draw(&mut canvas, &pen, lobe_area, &field, self.gray);
         Ok(canvas.downsampled(SUPERSAMPLE))
@@ -200,6 +216,18 @@ struct Field<'a> {
     peak: f32,
     /// Half the angle over which the lobe is averaged, radians.
     blur: f64,
+    /// Caps about the poles, which are shown by their means: the density of a map that was shifted along
+    /// its meridians has a singular point there, about which single photons stand out as spikes.
+    caps: Caps,
+}
+
+/// Caps about both poles.
+#[derive(Clone, Copy, Default)]
+struct Caps {
+    /// Their radius, radians; 0 if there are none.
+    radius: f64,
+    /// Mean density at the tip and at the root.
+    means: [Vec3; 2],
 }
 
 impl<'a> Field<'a> {
@@ -216,7 +244,9 @@ impl<'a> Field<'a> {
             query: frame::direction(theta, 0.0).as_vec3(),
             peak: 0.0,
             blur: texel * width.clamp(0.5, 3.0),
+            caps: Caps::default(),
         };
+        field.caps = field.find_caps(texel);
         // One direction a texel. The brightest few are noise or the poles, where a shifted map is
         // singular; they saturate rather than set the scale.
         let cube = crate::math::unicube::Unicube::new(table.res());
@@ -230,9 +260,58 @@ impl<'a> Field<'a> {
         field
     }
 
-    /// `S cos(theta)` per steradian, linear RGB.
+    /// `S cos(theta)` per steradian, linear RGB; about the poles its mean.
     fn rgb(&self, w: DVec3) -> Vec3 {
+        /// Radius, in those of the cap, at which the density itself is shown again.
+        const RIM: f64 = 1.5;
+        let off = w.x.hypot(w.y) / self.caps.radius.sin();
+        // A cap of radius 0 is infinitely far off.
+        if off.is_nan() || off >= RIM {
+            return self.density(w);
+        }
+        let mean = self.caps.means[usize::from(w.z < 0.0)];
+        let t = ((off - 1.0) / (RIM - 1.0)).clamp(0.0, 1.0);
+        mean.lerp(self.density(w), (t * t * (3.0 - 2.0 * t)) as f32)
+    }
+
+    fn density(&self, w: DVec3) -> Vec3 {
         self.table.lobe(self.query).density(w.as_vec3())
+    }
+
+    /// Caps as wide as the maps of both nodes are shifted, and a texel more.
+    fn find_caps(&self, texel: f64) -> Caps {
+        let nodes = self.table.nodes();
+        if nodes.mode == Mode::Paper {
+            return Caps::default();
+        }
+        let (a, b, share) = nodes.bracket(self.theta);
+        let shift = |node: usize| (self.theta - nodes.centers[node]).abs();
+        let shift = if share > 0.0 {
+            shift(a).max(shift(b))
+        } else {
+            shift(a)
+        };
+        if shift == 0.0 {
+            return Caps::default();
+        }
+        let radius = shift + texel;
+        let mean = |side: f64| {
+            const RINGS: usize = 24;
+            const SPOKES: usize = 72;
+            let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+            for i in 0..RINGS * SPOKES {
+                let polar = radius * ((i / SPOKES) as f64 + 0.5) / RINGS as f64;
+                let phi = std::f64::consts::TAU * (i % SPOKES) as f64 / SPOKES as f64;
+                let w = frame::direction(side * (std::f64::consts::FRAC_PI_2 - polar), phi);
+                sum += self.density(w) * polar.sin() as f32;
+                weights += polar.sin() as f32;
+            }
+            sum / weights
+        };
+        Caps {
+            radius,
+            means: [mean(1.0), mean(-1.0)],
+        }
     }
 
     fn gray(&self, w: DVec3) -> f32 {

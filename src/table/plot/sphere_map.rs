@@ -253,7 +253,7 @@ fn difference_bar(canvas: &mut Canvas, pen: &Pen, bar: Area, range: f32) {
 }
 
 /// `100`, `0.01`, or in between what is short.
-fn power_of_ten(exponent: i32) -> String {
+pub(super) fn power_of_ten(exponent: i32) -> String {
     match exponent {
         -4..=3 => format!("{}", 10f64.powi(exponent)),
         _ => format!("1e{exponent}"),

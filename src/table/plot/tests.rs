@@ -34,6 +34,7 @@ fn plot(maps: &ScatterMaps) -> Plot<'_> {
         maps,
         gray: false,
         incidence_deg: 30.0,
+        closed_form: None,
         title: "made up".into(),
         subtitle: "a lobe".into(),
         size: (800, 500),
@@ -78,4 +79,38 @@ fn impossible_plots_are_refused() {
     }
     let odd = self::maps(6);
     assert!(plot(&odd).draw().is_err());
+}
+
+#[test]
+fn poles_have_no_spikes() {
+    // One bright texel beside each pole of an even table, as a single photon leaves it.
+    let mut maps = maps(32);
+    let cube = Unicube::new(32);
+    let nodes = maps.nodes.len();
+    for (i, rgb) in maps.rgb.iter_mut().enumerate() {
+        *rgb = [(cube.solid_angle(i % cube.texels()) * 0.05) as f32; 3];
+    }
+    for node in 0..nodes {
+        for z in [1.0, -1.0] {
+            let texel = cube.texel(DVec3::new(0.01, 0.02, z).normalize());
+            maps.rgb[node * cube.texels() + texel] = [0.0005; 3];
+        }
+    }
+    let table = ScatterTable::new(maps.nodes.clone(), maps.res, maps.rgb.clone());
+    // Between two nodes, so that both are shifted.
+    let theta = 0.5 * (maps.nodes.centers[4] + maps.nodes.centers[5]);
+    let field = Field::new(&table, theta, 1e4);
+    let mut worst = [0.0f32; 2];
+    for i in 0..2000 {
+        let polar = 0.25 * f64::from(i % 50) / 50.0 + 1e-4;
+        let phi = f64::from(i) * 0.157;
+        for side in [1.0, -1.0] {
+            let w = frame::direction(side * (std::f64::consts::FRAC_PI_2 - polar), phi);
+            let raw = field.density(w).x;
+            worst[0] = worst[0].max(raw);
+            worst[1] = worst[1].max(field.gray(w));
+        }
+    }
+    assert!(worst[0] > 2.0, "{worst:?}");
+    assert!(worst[1] < 0.3, "{worst:?}");
 }

@@ -1,0 +1,148 @@
+//! Parts of named channels of any type and size, to and from the bytes of an OpenEXR file.
+
+use super::attributes::{Attributes, Value};
+use crate::io::sort_exr_attributes;
+use crate::table::TableError;
+use exr::meta::header::Header;
+use exr::prelude::{
+    AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image,
+    ImageAttributes, IntegerBounds, Layer, LayerAttributes, LineOrder, ReadChannels, ReadLayers,
+    SmallVec, Text, Vec2, WritableImage,
+};
+use std::io::Cursor;
+use std::path::Path;
+
+/// Prefix of all attributes that are ours.
+const PREFIX: &str = "vair:";
+
+/// One part of a file.
+#[derive(Clone, Debug)]
+pub(super) struct RawPart {
+    pub(super) name: String,
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) channels: Vec<(String, FlatSamples)>,
+    pub(super) attributes: Attributes,
+}
+
+/// The bytes of a file that holds `parts`.
+pub(super) fn encode(parts: Vec<RawPart>, path: &Path) -> Result<Vec<u8>, TableError> {
+    let (width, height) = parts.first().map_or((1, 1), |p| (p.width, p.height));
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: exr::image::Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
+    let layers: Vec<_> = parts
+        .into_iter()
+        .map(|part| {
+            let mut attributes = LayerAttributes::named(text(&part.name));
+            attributes.software_name = Some(text("vair"));
+            for (name, value) in &part.attributes.0 {
+                let name = text(&format!("{PREFIX}{name}"));
+                attributes.other.insert(name, to_exr(value));
+            }
+            let channels = part.channels.into_iter();
+            let channels = channels.map(|(name, samples)| AnyChannel::new(text(&name), samples));
+            Layer::new(
+                Vec2(part.width, part.height),
+                attributes,
+                encoding,
+                AnyChannels::sort(channels.collect()),
+            )
+        })
+        .collect();
+    let window = IntegerBounds::new((0, 0), (width, height));
+    let image = Image::from_layers(ImageAttributes::new(window), layers);
+    let mut bytes = Cursor::new(Vec::new());
+    image
+        .write()
+        .to_buffered(&mut bytes)
+        .map_err(|e| TableError::Encode {
+            path: path.to_owned(),
+            reason: e.to_string(),
+        })?;
+    let mut bytes = bytes.into_inner();
+    sort_exr_attributes(&mut bytes);
+    Ok(bytes)
+}
+
+/// The parts of a file in their order, after `check` has seen all headers: nothing is set aside for
+/// samples before that.
+pub(super) fn decode(
+    bytes: &[u8],
+    path: &Path,
+    check: impl Fn(&[Header]) -> Result<(), TableError>,
+) -> Result<Vec<RawPart>, TableError> {
+    let not_exr = |e: exr::error::Error| TableError::NotExr {
+        path: path.to_owned(),
+        reason: e.to_string(),
+    };
+    let reader = exr::block::read(Cursor::new(bytes), true).map_err(not_exr)?;
+    check(reader.headers()).map_err(|e| e.of_file(path))?;
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        .pedantic()
+        .from_chunks(reader)
+        .map_err(not_exr)?;
+    Ok(image.layer_data.into_iter().map(part).collect())
+}
+
+/// The format version that the first header claims, if any.
+pub(super) fn format(headers: &[Header]) -> Option<i32> {
+    let name = text(&format!("{PREFIX}format"));
+    match headers.first()?.own_attributes.other.get(&name)? {
+        AttributeValue::I32(format) => Some(*format),
+        _ => None,
+    }
+}
+
+fn part(layer: Layer<AnyChannels<FlatSamples>>) -> RawPart {
+    let name = layer.attributes.layer_name.as_ref().map(Text::to_string);
+    let mut attributes = Attributes::default();
+    for (name, value) in &layer.attributes.other {
+        if let (Some(name), Some(value)) = (name.to_string().strip_prefix(PREFIX), from_exr(value))
+        {
+            attributes.0.insert(name.to_owned(), value);
+        }
+    }
+    let channels = layer.channel_data.list.into_iter();
+    RawPart {
+        name: name.unwrap_or_default(),
+        width: layer.size.0,
+        height: layer.size.1,
+        channels: channels
+            .map(|channel| (channel.name.to_string(), channel.sample_data))
+            .collect(),
+        attributes,
+    }
+}
+
+/// UTF-8 bytes as they are: OpenEXR does not care, and Python decodes them.
+fn text(value: &str) -> Text {
+    Text::from_bytes_unchecked(SmallVec::from_slice(value.as_bytes()))
+}
+
+fn to_exr(value: &Value) -> AttributeValue {
+    match value {
+        Value::Int(value) => AttributeValue::I32(*value),
+        Value::Double(value) => AttributeValue::F64(*value),
+        Value::Text(value) => AttributeValue::Text(text(value)),
+    }
+}
+
+fn from_exr(value: &AttributeValue) -> Option<Value> {
+    match value {
+        AttributeValue::I32(value) => Some(Value::Int(*value)),
+        AttributeValue::F64(value) => Some(Value::Double(*value)),
+        AttributeValue::Text(value) => {
+            let value = String::from_utf8(value.as_slice().to_vec()).ok()?;
+            Some(Value::Text(value))
+        }
+        _ => None,
+    }
+}

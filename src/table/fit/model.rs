@@ -1,0 +1,196 @@
+//! The two models: parameters, ranges and lobes.
+//!
+//! Both are taken as far-field models: means over the width of the fiber, as a table is.
+
+use super::data::COLUMNS;
+use super::lobes::{
+    Entry, Lobe, OFFSETS, add_logistic, along, entries, exit_azimuth, logistic_scale, variance,
+};
+use crate::math::fresnel;
+use std::f64::consts::{PI, TAU};
+
+/// A model of hair or fur that can be fitted to a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Model {
+    /// Chiang, Bitterli, Tappan, Burley 2016: R, TT, TRT and the rest, longitudinal lobes of d'Eon et al.
+    /// 2011, logistic azimuths. What pbrt, Mitsuba, Cycles and MaterialX call (principled) hair.
+    Chiang,
+    /// The double cylinder after Yan, Tseng, Jensen, Ramamoorthi 2015 and 2017: a cuticle of layers, a
+    /// cortex, and a medulla that scatters. Their tabulated profiles of scattered light are replaced by
+    /// one lobe in closed form, a longitudinal lobe of its own width times a wrapped Cauchy in azimuth.
+    DoubleCylinder,
+}
+
+/// A parameter that all channels share: name, range, start.
+pub(super) struct Shared {
+    pub(super) name: &'static str,
+    pub(super) range: [f64; 2],
+    pub(super) start: f64,
+}
+
+const fn shared(name: &'static str, range: [f64; 2], start: f64) -> Shared {
+    Shared { name, range, start }
+}
+
+const CHIANG: [Shared; 4] = [
+    shared("eta", [1.1, 2.2], 1.5),
+    shared("beta_m", [0.04, 1.0], 0.3),
+    shared("beta_n", [0.05, 1.0], 0.3),
+    shared("alpha_deg", [-12.0, 12.0], 1.0),
+];
+
+const DOUBLE_CYLINDER: [Shared; 10] = [
+    shared("eta", [1.1, 2.2], 1.5),
+    shared("beta_m", [0.04, 1.0], 0.3),
+    shared("beta_n", [0.05, 1.0], 0.3),
+    shared("alpha_deg", [-12.0, 12.0], 1.0),
+    shared("layers", [0.2, 5.0], 1.0),
+    shared("kappa", [0.02, 0.98], 0.6),
+    shared("sigma_m_s", [0.0, 20.0], 1.0),
+    shared("beta_m_s", [0.1, 1.0], 0.6),
+    shared("rho_s", [-0.9, 0.9], 0.2),
+    shared("path_s", [0.0, 12.0], 3.0),
+];
+
+/// Range and start of the absorption of a channel, per radius.
+pub(super) const ABSORPTION: Shared = shared("sigma_a", [0.0, 30.0], 0.3);
+
+impl Model {
+    /// What it is called on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Chiang => "chiang",
+            Self::DoubleCylinder => "double-cylinder",
+        }
+    }
+
+    /// Its lobes, in order.
+    pub fn lobes(self) -> &'static [&'static str] {
+        match self {
+            Self::Chiang => &["R", "TT", "TRT", "TRRT+"],
+            Self::DoubleCylinder => &["R", "TT", "TRT", "TRRT+", "TTs"],
+        }
+    }
+
+    pub(super) fn shared(self) -> &'static [Shared] {
+        match self {
+            Self::Chiang => &CHIANG,
+            Self::DoubleCylinder => &DOUBLE_CYLINDER,
+        }
+    }
+
+    /// The lobes for one query.
+    ///
+    /// * `edges`: of the rows of inclinations. * `p`: the shared parameters in their order.
+    /// * `absorption`: per channel.
+    pub(super) fn evaluate(
+        self,
+        theta_q: f64,
+        edges: &[f64],
+        p: &[f64],
+        absorption: &[f64],
+    ) -> Vec<Lobe> {
+        let medulla = match self {
+            Self::Chiang => None,
+            Self::DoubleCylinder => Some(Medulla {
+                layers: p[4],
+                kappa: p[5],
+                scattering: p[6],
+                path: p[9],
+            }),
+        };
+        let v = variance(p[1]);
+        let scale = logistic_scale(p[2]);
+        let alpha = p[3].to_radians();
+        // Scales tilt R toward the root and TT and TRT toward the tip; the rest is not tilted.
+        let tilted = [
+            theta_q + 2.0 * alpha,
+            theta_q - alpha,
+            theta_q - 4.0 * alpha,
+            theta_q,
+        ];
+        let mut lobes: Vec<Lobe> = tilted
+            .iter()
+            .zip([v, 0.25 * v, 4.0 * v, 4.0 * v])
+            .map(|(&theta, v)| Lobe {
+                along: along(edges, theta, v),
+                around: vec![[0.0; COLUMNS]; absorption.len()],
+            })
+            .collect();
+        let mut scattered = vec![0.0; absorption.len()];
+        for entry in entries(p[0], theta_q) {
+            let energies: Vec<[f64; 5]> = absorption
+                .iter()
+                .map(|&sigma| energies(&entry, p[0], sigma, medulla.as_ref()))
+                .collect();
+            let of = |lobe: usize| {
+                energies
+                    .iter()
+                    .map(|e| e[lobe] / OFFSETS as f64)
+                    .collect::<Vec<_>>()
+            };
+            for (order, lobe) in lobes.iter_mut().take(3).enumerate() {
+                add_logistic(
+                    &mut lobe.around,
+                    exit_azimuth(order, &entry),
+                    scale,
+                    &of(order),
+                );
+            }
+            for (around, energy) in lobes[3].around.iter_mut().zip(of(3)) {
+                around.iter_mut().for_each(|a| *a += energy / TAU);
+            }
+            scattered.iter_mut().zip(of(4)).for_each(|(s, e)| *s += e);
+        }
+        if self == Self::DoubleCylinder {
+            let cauchy = wrapped_cauchy(p[8]);
+            lobes.push(Lobe {
+                along: along(edges, theta_q, variance(p[7])),
+                around: scattered.iter().map(|s| cauchy.map(|c| c * s)).collect(),
+            });
+        }
+        lobes
+    }
+}
+
+struct Medulla {
+    layers: f64,
+    kappa: f64,
+    scattering: f64,
+    path: f64,
+}
+
+/// Energies of R, TT, TRT, all the rest, and light scattered in the medulla, for a ray.
+fn energies(entry: &Entry, eta: f64, sigma: f64, medulla: Option<&Medulla>) -> [f64; 5] {
+    let crossing = 2.0 * entry.gamma_t.cos() / entry.cos_theta_t;
+    let Some(medulla) = medulla else {
+        let (f, _) = fresnel::dielectric(entry.cosine, eta);
+        let t = (-sigma * crossing).exp();
+        let tt = (1.0 - f).powi(2) * t;
+        let trt = tt * f * t;
+        return [f, tt, trt, trt * f * t / (1.0 - f * t), 0.0];
+    };
+    let (f, _) = fresnel::layered(entry.cosine, eta, medulla.layers);
+    let inside = (medulla.kappa.powi(2) - entry.gamma_t.sin().powi(2)).max(0.0);
+    let in_medulla = 2.0 * inside.sqrt() / entry.cos_theta_t;
+    let straight = (-medulla.scattering * in_medulla).exp();
+    let t = (-sigma * (crossing - in_medulla)).exp() * straight;
+    let tt = (1.0 - f).powi(2) * t;
+    let trt = tt * f * t;
+    // What leaves the straight path at its first crossings comes out after a path of its own.
+    let out = (-sigma * medulla.path).exp();
+    let scattered = (1.0 - f) * (1.0 - straight) * out * (1.0 + f * t);
+    [f, tt, trt, trt * f * t / (1.0 - f * t), scattered]
+}
+
+/// Per radian, about straight through; `rho` below zero scatters back. Means over the columns.
+fn wrapped_cauchy(rho: f64) -> [f64; COLUMNS] {
+    std::array::from_fn(|column| {
+        const POINTS: usize = 4;
+        let at = |i: usize| {
+            let phi = PI * (column as f64 + (i as f64 + 0.5) / POINTS as f64) / COLUMNS as f64;
+            (1.0 - rho * rho) / (1.0 + rho * rho + 2.0 * rho * phi.cos()) / TAU
+        };
+        (0..POINTS).map(at).sum::<f64>() / POINTS as f64
+    })
+}
