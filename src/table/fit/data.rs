@@ -67,6 +67,16 @@ impl Data {
             edges,
         };
         let bins = bins(table.res(), &data.edges);
+        // Points lie in rows of their own; what they stand for, not the exact size of a bin, divides, or
+        // the two would beat.
+        let cube = Unicube::new(table.res());
+        let mut measure = vec![0.0; rows * COLUMNS];
+        for (i, bin) in bins.iter().enumerate() {
+            if let Some(bin) = bin {
+                let solid_angle = cube.solid_angle(i / (POINTS * POINTS));
+                measure[*bin] += solid_angle / (POINTS * POINTS) as f64;
+            }
+        }
         for &channel in channels {
             let flux = table.channel(channel).unwrap_or_default();
             let texels = 6 * table.res() * table.res();
@@ -79,9 +89,8 @@ impl Data {
                         out[*bin] += f64::from(f) / (POINTS * POINTS) as f64;
                     }
                 }
-                for (i, d) in out.iter_mut().enumerate() {
-                    let e = [data.edges[i / COLUMNS], data.edges[i / COLUMNS + 1]];
-                    *d /= 2.0 * column * (e[1].sin() - e[0].sin());
+                for (d, m) in out.iter_mut().zip(&measure) {
+                    *d /= f64::max(*m, f64::MIN_POSITIVE);
                 }
             }
             let terms = density.iter().enumerate();

@@ -99,7 +99,7 @@ fn the_parameters_of_chiang_are_recovered() {
     for (found, expected) in fit.absorption.iter().zip([0.1, 0.3, 0.8]) {
         assert!((found - expected).abs() < 0.02 + 0.02 * expected, "{found}");
     }
-    assert!(fit.error.iter().all(|e| *e < 0.02), "{fit:?}");
+    assert!(fit.error.iter().all(|e| *e < 0.04), "{fit:?}");
     assert!(fit.lobes.iter().all(|l| (l.table - l.model).abs() < 0.01));
 }
 
