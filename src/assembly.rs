@@ -5,7 +5,7 @@ use crate::blame::Blame;
 use crate::bsdf::{HairMaterial, TableSet, Zone};
 use crate::progress::{Cancel, Progress};
 use crate::species::{HairClass, Species, Station};
-use crate::table::{Provenance, ScatterTable, TableError, Undyed};
+use crate::table::{Provenance, ScatterTable, TableError, TableFile, Undyed};
 
 /// Materials that cannot be made.
 #[derive(Debug, thiserror::Error)]
@@ -70,6 +70,35 @@ pub fn materials(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Vec<HairMaterial>, AssemblyError> {
+    materials_with(species, &[], settings, cache, progress, cancel)
+}
+
+/// [`materials`] from tables that are there already, as far as they reach: a station takes the table of
+/// its class that was baked nearest to it, and only classes without any are baked. Dyed tables keep the
+/// pigment that they have.
+///
+/// # Errors
+/// As for [`materials`], and a table of a class that the species does not have.
+pub fn materials_with(
+    species: &Species,
+    given: &[TableFile],
+    settings: &Settings,
+    cache: Option<&Cache>,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Vec<HairMaterial>, AssemblyError> {
+    for table in given {
+        let class = &table.provenance().class;
+        if !species.classes.iter().any(|c| c.name == *class) {
+            let classes: Vec<&str> = species.classes.iter().map(|c| c.name.as_str()).collect();
+            return Err(TableError::Request(format!(
+                "a table of the hair class {class:?} was given; {} has {}",
+                species.id,
+                classes.join(", ")
+            ))
+            .into());
+        }
+    }
     let mut materials = Vec::with_capacity(species.classes.len());
     for class in &species.classes {
         let zones = class.pigment.iter().map(|band| Zone {
@@ -78,6 +107,15 @@ pub fn materials(
         });
         let mut tables = Vec::with_capacity(class.stations.len() * class.pigment.len());
         for station in &class.stations {
+            if let Some(table) = nearest(given, class, station) {
+                for band in &class.pigment {
+                    tables.push(ScatterTable::from(match table {
+                        TableFile::Scatter(maps) => maps.clone(),
+                        TableFile::Structure(table) => table.dye(band.absorption_per_um())?,
+                    }));
+                }
+                continue;
+            }
             let baked = station_table(species, class, station, settings, cache, progress, cancel)?;
             if !baked.complete {
                 return Err(BakeError::Stopped.into());
@@ -98,4 +136,15 @@ pub fn materials(
             .extend(TableSet::new(stations, zones.collect(), tables).map(HairMaterial::Tables));
     }
     Ok(materials)
+}
+
+/// The table of the class that was baked nearest to the station.
+fn nearest<'a>(
+    given: &'a [TableFile],
+    class: &HairClass,
+    station: &Station,
+) -> Option<&'a TableFile> {
+    let off = |table: &TableFile| (table.provenance().station - station.at).abs();
+    let of_class = given.iter().filter(|t| t.provenance().class == class.name);
+    of_class.min_by(|a, b| off(a).total_cmp(&off(b)))
 }

@@ -163,3 +163,61 @@ fn refusals_have_their_exit_code_and_leave_nothing() {
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
 }
+
+#[test]
+fn compare_pack_and_fit_work_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    even(&at("even.exr"));
+    let json = |arguments: &[&str]| {
+        let mut command = vair();
+        command
+            .current_dir(folder.path())
+            .arg("table")
+            .args(arguments);
+        let output = command.output().unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{arguments:?}: {stderr}");
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()
+    };
+    let packed = json(&["pack", "even.exr", "-o", "small.exr", "--json"]);
+    assert!(
+        packed["channels"][2]["against_input"]["error"]
+            .as_f64()
+            .unwrap()
+            < 0.05
+    );
+    let compared = json(&["compare", "small.exr", "even.exr", "--json", "-o", "d.png"]);
+    assert_eq!(compared["method"], "texels");
+    assert!(compared["channels"][0]["albedo_max"].as_f64().unwrap() < 1e-6);
+    assert!(std::fs::read(at("d.png")).unwrap().starts_with(b"\x89PNG"));
+    let fitted = json(&["fit", "small.exr", "--model", "chiang", "--json"]);
+    assert_eq!(fitted["fits"][0]["lobes"].as_array().unwrap().len(), 4);
+    let info = json(&["info", "small.exr", "--json"]);
+    assert_eq!(info["bins"][0]["ledger"][1]["emitted"], PHOTON * 1000);
+
+    for arguments in [
+        ["pack", "even.exr", "-o", "x.exr", "--budget", "10"],
+        ["pack", "even.exr", "-o", "x.exr", "--budget", "many"],
+        ["pack", "even.exr", "-o", "x.exr", "--rank", "0"],
+        [
+            "compare",
+            "even.exr",
+            "even.exr",
+            "--theta-max",
+            "91",
+            "--quiet",
+        ],
+        ["fit", "even.exr", "--level", "9", "--model", "chiang"],
+    ] {
+        let mut command = vair();
+        command
+            .current_dir(folder.path())
+            .arg("table")
+            .args(arguments);
+        let output = command.output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        assert!(!output.stderr.is_empty());
+    }
+    assert!(!at("x.exr").exists());
+}

@@ -11,6 +11,7 @@ use crate::render::{Crop, Film, RenderJob, Sampler};
 use crate::scene::{Backdrop, Environment, Scene, SceneParts, Sun, View, load_environment};
 use crate::skin::{self, Skin};
 use crate::species;
+use crate::table::TableFile;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -20,6 +21,7 @@ use std::time::Duration;
 #[command(after_help = "Examples:
   vair render red-fox -o red-fox.png
   vair render polar-bear --env sky --res 1280x720 --spp 128 -o bear.png -o bear.exr
+  vair render red-fox --table guard-small.exr --table under-small.exr -o fox.png
   vair render mink --skin sofa.obj --strands 1e6 -o sofa.png
   vair render red-fox --crop 200,150,64,64 --spp 256 -o eye.exr")]
 pub(super) struct Args {
@@ -58,6 +60,9 @@ pub(super) struct Args {
     /// Photons for each scattering table that has to be baked.
     #[arg(long, value_parser = parse_count, default_value = "3e6")]
     bake_photons: u64,
+    /// A table to use instead of baking, packed or not: for the stations of its hair class. May repeat.
+    #[arg(long, value_name = "FILE")]
+    table: Vec<PathBuf>,
     /// Camera: degrees around the subject (0 is +Z, 90 is +X) and above it; if not given, the side from
     /// which the skin looks best.
     #[arg(long, value_parser = parse_pair, value_name = "YAW,PITCH", allow_hyphen_values = true)]
@@ -149,6 +154,24 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     super::with_threads(args.threads, || run_here(args, console))?
 }
 
+/// A table whose maps the renderer can look up.
+fn given_table(path: &Path) -> Result<TableFile, Failure> {
+    let table = TableFile::read(path)?;
+    let res = match &table {
+        TableFile::Structure(table) => table.res,
+        TableFile::Scatter(maps) => maps.res,
+    };
+    if !res.is_power_of_two() {
+        let message = format!("{} has {res} texels a face edge", path.display());
+        return Err(Failure::with_help(
+            Blame::Input,
+            message,
+            "bake it again with --face 64 or another power of two",
+        ));
+    }
+    Ok(table)
+}
+
 fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     // All that can be refused is refused before any work.
     let species = species::load(&args.name, &args.set)?;
@@ -158,6 +181,8 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         format_of(output)?;
         check_writable(output)?;
     }
+    let given = args.table.iter().map(|path| given_table(path));
+    let given = given.collect::<Result<Vec<TableFile>, Failure>>()?;
     let skin = skin::load(&args.skin)?;
     let view = view(args, &skin)?;
     let environment = environment(args, &view)?;
@@ -176,7 +201,8 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         seed: args.seed,
         ..Settings::cone()
     };
-    let materials = assembly::materials(&species, &bake, cache.as_ref(), console, cancel)?;
+    let cache = cache.as_ref();
+    let materials = assembly::materials_with(&species, &given, &bake, cache, console, cancel)?;
     let settings = GroomSettings {
         strands: args.strands.map(|n| n as usize),
         seed: args.seed,

@@ -13,7 +13,7 @@ mod raw;
 
 pub(super) use packed::encode_packed;
 
-use super::{PackedTable, ScatterMaps, StructureTable, TableError};
+use super::{PackedTable, Provenance, ScatterMaps, StructureTable, TableError};
 use crate::io::{AtomicFile, read_bounded};
 use std::path::Path;
 
@@ -45,6 +45,14 @@ impl TableFile {
             parts::from_raw(raw).and_then(decode::table)
         };
         table.map_err(|e| e.of_file(path))
+    }
+
+    /// Where the table comes from.
+    pub fn provenance(&self) -> &Provenance {
+        match self {
+            Self::Structure(table) => &table.provenance,
+            Self::Scatter(maps) => &maps.provenance,
+        }
     }
 
     /// Writes the table: the file appears complete or not at all, and the same table gives the

@@ -224,6 +224,9 @@ pub(super) fn decode_packed(parts: Vec<RawPart>) -> Result<PackedTable, TableErr
     if tiles * side * side > MAX_SAMPLES || bins * kind.channels() * 6 * res * res > MAX_SAMPLES {
         return Err(wrong("it claims more numbers than any table may hold"));
     }
+    if values < tiles {
+        return Err(wrong(format!("it holds {values} values for {tiles} tiles")));
+    }
     let radius_um = head.get_double("radius_um")?;
     let provenance = decode::provenance(&head)?;
     let mut parts = parts.into_iter();

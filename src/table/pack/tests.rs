@@ -185,3 +185,42 @@ fn impossible_wishes_are_refused() {
         ));
     }
 }
+
+#[test]
+fn damaged_files_are_refused_and_never_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("damaged.exr");
+    let packing = Packing {
+        rank: None,
+        bytes: Some(9000),
+    };
+    PackedTable::new(&table(16, 1e9, 1, 0.0), packing)
+        .unwrap()
+        .write(&path)
+        .unwrap();
+    let good = std::fs::read(&path).unwrap();
+    let try_read = |bytes: &[u8]| {
+        std::fs::write(&path, bytes).unwrap();
+        TableFile::read(&path)
+    };
+    assert!(try_read(&good).is_ok());
+    for cut in (0..good.len()).step_by(97) {
+        assert!(try_read(&good[..cut]).is_err());
+    }
+    let mut rng = Rng::new(1, 2);
+    for _ in 0..600 {
+        let mut bytes = good.clone();
+        let at = (rng.uniform() * bytes.len() as f64) as usize;
+        bytes[at] ^= 1 << (rng.bits() % 8);
+        if let Err(error) = try_read(&bytes) {
+            assert_eq!(error.blame(), crate::blame::Blame::Input, "{error}");
+            assert!(error.to_string().contains("damaged.exr"), "{error}");
+        }
+    }
+    // What contradicts itself is named.
+    let mut packed = PackedTable::new(&table(16, 1e9, 1, 0.0), packing).unwrap();
+    packed.code.trees.bits.pop();
+    packed.write(&path).unwrap();
+    let message = TableFile::read(&path).unwrap_err().to_string();
+    assert!(message.contains("trees"), "{message}");
+}
