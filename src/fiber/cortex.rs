@@ -3,7 +3,7 @@
 
 mod streaks;
 
-use super::medulla::Pieces;
+use super::medulla::{Pieces, Rim};
 use super::section::UnitRay;
 use crate::species::Structure;
 use streaks::Streaks;
@@ -27,6 +27,9 @@ struct Lean {
     /// Radius at which the clear rim begins.
     rim: f64,
 }
+
+/// A straight line crosses a waisted outline four times; more only where it grazes.
+const MOST_CROSSINGS: u32 = 8;
 
 impl Pigment {
     /// * `semi`: semi-axes of the section, micrometers; `radii`: of its outline, in their units.
@@ -77,6 +80,45 @@ impl Pigment {
             _ => 0.0,
         };
         core + gaps + self.cortex(ray, 0.0, a, None) + self.cortex(ray, b, t, None)
+    }
+
+    /// As [`Pigment::along`] in a section that is no ellipse.
+    ///
+    /// * `rim`: the medulla's outline there, which a ray may cross several times.
+    pub(super) fn along_shaped(
+        &self,
+        ray: &UnitRay,
+        t: f64,
+        pieces: Option<&Pieces>,
+        rim: &Rim,
+    ) -> f64 {
+        let (mut at, mut sum, mut from) = (0.0, 0.0, None);
+        let mut inside = rim.holds(ray.at(0.0));
+        for _ in 0..MOST_CROSSINGS {
+            let rest = ray.from(at);
+            let next = if inside {
+                rim.leave(&rest, from)
+            } else {
+                rim.enter(&rest, from)
+            };
+            let end = next.map_or(t, |(way, _)| (at + way).min(t));
+            sum += if inside {
+                let (z0, z1) = (ray.z + at * ray.dz, ray.z + end * ray.dz);
+                let share = pieces.map_or(1.0, |pieces| pieces.share(z0, z1));
+                let gaps = match pieces {
+                    Some(_) if share < 1.0 => self.cortex(ray, at, end, pieces),
+                    _ => 0.0,
+                };
+                share * self.walls * (end - at) + gaps
+            } else {
+                self.cortex(ray, at, end, None)
+            };
+            (at, from, inside) = (end, next.map(|(_, state)| state), !inside);
+            if at >= t {
+                break;
+            }
+        }
+        sum
     }
 
     /// The part of `0..t` within the medulla's outline.

@@ -244,6 +244,19 @@ impl UnitRay {
         })
     }
 
+    /// The same ray from its point at `t` on.
+    pub(super) fn from(&self, t: f64) -> Self {
+        let p = self.at(t);
+        Self {
+            x: p.x,
+            y: p.y,
+            z: p.z,
+            b: self.b + t * self.a,
+            c: p.x * p.x + p.y * p.y,
+            ..*self
+        }
+    }
+
     /// The point at `t`.
     #[inline]
     pub(super) fn at(&self, t: f64) -> DVec3 {

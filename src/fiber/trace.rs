@@ -109,7 +109,10 @@ impl Fiber {
             Region::Medulla => t * self.medium(region).pigment,
             Region::Cortex => {
                 let pieces = self.medulla.pieces.as_ref();
-                self.pigment.along(&rays.unit, t, pieces)
+                match &self.medulla.rim {
+                    Some(rim) => self.pigment.along_shaped(&rays.unit, t, pieces, rim),
+                    None => self.pigment.along(&rays.unit, t, pieces),
+                }
             }
         }
     }

@@ -33,7 +33,7 @@ impl Rim {
     }
 
     /// Whether a point is inside.
-    pub(super) fn holds(&self, unit: DVec3) -> bool {
+    pub(in crate::fiber) fn holds(&self, unit: DVec3) -> bool {
         self.surface.contains(unit)
     }
 
