@@ -139,10 +139,9 @@ fn text(compared: &Comparison) -> String {
         let [query, theta, phi] = c.largest_at_deg;
         let _ = writeln!(
             out,
-            "{:<8} {level:<8} {} {}  {:.5}  {}  {query:.0} {theta:.0} {phi:.0}",
+            "{:<8} {level:<8} {}   {:.5}  {}  {query:.0} {theta:.0} {phi:.0}",
             c.name,
             percents(&c.total),
-            "",
             c.albedo,
             percent(c.largest).trim_start(),
         );

@@ -8,8 +8,11 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Columns of the cut, of 1 degree: narrower than a texel.
-const COLUMNS: usize = 360;
+/// Columns of the cut, of 2 degrees: wider than a texel, or the steps of texels would show.
+const COLUMNS: usize = 180;
+
+/// Azimuths averaged for a column of the table.
+const TAPS: usize = 4;
 
 /// Inclinations summed for a column.
 const ROWS: usize = 360;
@@ -87,7 +90,7 @@ pub(super) fn draw(canvas: &mut Canvas, pen: &Pen, area: Area, field: &Field, pl
         frame.min + frame.size() * Vec2::new(x, y.clamp(0.0, 1.0))
     };
     let caption = match plot.closed_form {
-        Some(_) => "light per radian of azimuth; thin: closed form",
+        Some(_) => "light per radian; thin line: closed form",
         None => "light per radian of azimuth",
     };
     let title = Vec2::new(frame.min.x, area.min.y);
@@ -107,8 +110,8 @@ pub(super) fn draw(canvas: &mut Canvas, pen: &Pen, area: Area, field: &Field, pl
         }
     }
     if let Some(cylinder) = plot.closed_form {
-        for c in 0..channels {
-            let ink = if plot.gray { INK } else { 0.7 * CHANNELS[c] };
+        for (c, &channel) in CHANNELS.iter().enumerate().take(channels) {
+            let ink = if plot.gray { INK } else { 0.7 * channel };
             let cut = cylinder.cut(field.theta, c, COLUMNS);
             let points = cut
                 .iter()
@@ -125,12 +128,13 @@ fn measured(field: &Field) -> Vec<Vec3> {
     (0..COLUMNS)
         .into_par_iter()
         .map(|column| {
-            let phi = TAU * (column as f64 + 0.5) / COLUMNS as f64 - PI;
             let mut sum = Vec3::ZERO;
-            for row in 0..ROWS {
+            for i in 0..ROWS * TAPS {
+                let (row, tap) = (i / TAPS, (i % TAPS) as f64 + 0.5);
+                let phi = TAU * (column as f64 + tap / TAPS as f64) / COLUMNS as f64 - PI;
                 let theta = PI * (row as f64 + 0.5) / ROWS as f64 - FRAC_PI_2;
                 let density = field.rgb(frame::direction(theta, phi));
-                sum += density * (theta.cos() * PI / ROWS as f64) as f32;
+                sum += density * (theta.cos() * PI / (ROWS * TAPS) as f64) as f32;
             }
             sum
         })
@@ -160,25 +164,23 @@ fn axes(canvas: &mut Canvas, pen: &Pen, area: Area, top: f32) {
 mod tests {
     use super::*;
 
+    const FINE: usize = 360;
+
     #[test]
     fn the_closed_form_keeps_its_energy_and_its_caustics() {
         let glass = SmoothCylinder {
             eta: 1.55,
             tau: [0.0, 0.2, 0.2],
         };
-        let cut = glass.cut(0.0, 0, COLUMNS);
-        let step = TAU / COLUMNS as f64;
+        let cut = glass.cut(0.0, 0, FINE);
+        let step = TAU / FINE as f64;
         assert!((cut.iter().sum::<f64>() * step - 1.0).abs() < 1e-4);
         // The rainbow of TRT at 18.62 degrees and of the next lobe at 95.30.
-        let at = |degrees: f64| cut[((degrees + 180.0) as usize).min(COLUMNS - 1)];
+        let at = |degrees: f64| cut[((degrees + 180.0) as usize).min(FINE - 1)];
         assert!(at(18.3) > 2.0 * at(20.5) && at(18.3) > 1.2 * at(10.5));
         assert!(at(95.7) > 2.0 * at(93.5));
         // With absorption: 0.682760 of the light at 30 degrees.
-        let sum = glass
-            .cut(30f64.to_radians(), 1, COLUMNS)
-            .iter()
-            .sum::<f64>()
-            * step;
+        let sum = glass.cut(30f64.to_radians(), 1, FINE).iter().sum::<f64>() * step;
         assert!((sum - 0.682_760).abs() < 1e-3, "{sum}");
     }
 }

@@ -278,7 +278,8 @@ impl<'a> Field<'a> {
         self.table.lobe(self.query).density(w.as_vec3())
     }
 
-    /// Caps as wide as the maps of both nodes are shifted, and a texel more.
+    /// Caps of some texels and a part of the shift: outside of them the factor that a shift brings stays
+    /// below 2; wider ones would hide what the table holds.
     fn find_caps(&self, texel: f64) -> Caps {
         let nodes = self.table.nodes();
         if nodes.mode == Mode::Paper {
@@ -294,7 +295,7 @@ impl<'a> Field<'a> {
         if shift == 0.0 {
             return Caps::default();
         }
-        let radius = shift + texel;
+        let radius = 0.25 * shift + 2.5 * texel;
         let mean = |side: f64| {
             const RINGS: usize = 24;
             const SPOKES: usize = 72;

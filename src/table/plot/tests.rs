@@ -112,5 +112,5 @@ fn poles_have_no_spikes() {
         }
     }
     assert!(worst[0] > 2.0, "{worst:?}");
-    assert!(worst[1] < 0.3, "{worst:?}");
+    assert!(worst[1] < 0.8, "{worst:?}");
 }
