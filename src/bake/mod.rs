@@ -21,6 +21,7 @@ mod pass;
 mod photon;
 mod plan;
 mod progressive;
+mod reconstruct;
 mod refine;
 mod settings;
 mod shard;

@@ -1,5 +1,6 @@
 //! How noisy a table is: relative L2 error of S, estimated from its own sums.
 
+use super::reconstruct::Reconstruction;
 use super::tally::Tally;
 use crate::math::unicube::Unicube;
 use crate::table::Nodes;
@@ -19,9 +20,10 @@ pub(super) struct Norm {
 /// Squared noise and squared signal of S, in common units; sums over nodes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Noise {
-    noise: f64,
+    /// Squared error.
+    pub(super) noise: f64,
     /// Signal and noise together, as the sums show it.
-    power: f64,
+    pub(super) power: f64,
 }
 
 impl Norm {
@@ -41,10 +43,27 @@ impl Norm {
         Self { weights, folded }
     }
 
+    /// What the square of a flux fraction of a texel adds to the squared norm of S.
+    pub(super) fn weight(&self, texel: usize) -> f64 {
+        self.weights[texel]
+    }
+
     /// Noise of one node at the clear level.
-    pub(super) fn of(&self, cube: &Unicube, nodes: &Nodes, node: usize, tally: &Tally) -> Noise {
+    ///
+    /// * `filter`: what takes noise off the maps, if anything does.
+    pub(super) fn of(
+        &self,
+        cube: &Unicube,
+        nodes: &Nodes,
+        node: usize,
+        tally: &Tally,
+        filter: Option<&Reconstruction>,
+    ) -> Noise {
         if nodes.centers[node].abs() > LIMIT_DEG.to_radians() || tally.is_empty() {
             return Noise::default();
+        }
+        if let Some(filter) = filter {
+            return filter.noise(tally, self);
         }
         let mut sum = Noise::default();
         for (texel, &weight) in self.weights.iter().enumerate() {
@@ -116,6 +135,7 @@ mod tests {
                     photons: 100_000,
                     seed,
                     fold,
+                    reconstruct: false,
                     ..Settings::cone()
                 };
                 let bake = Bake::of_fiber(&fiber, &settings).unwrap();

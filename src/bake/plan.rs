@@ -1,6 +1,7 @@
 //! What turns sums into tables: all that a bake knows beside its photons.
 
 use super::content::Recipe;
+use super::reconstruct::Reconstruction;
 use super::tally::Tally;
 use super::{BakeError, Settings};
 use crate::fiber::Fiber;
@@ -44,6 +45,12 @@ impl Plan {
     /// Sums to be kept: one a node and channel, channel by channel.
     pub(super) fn units(&self) -> usize {
         self.recipes.len() * self.settings.bins
+    }
+
+    /// What takes noise off the maps of a table.
+    pub(super) fn filter(&self, cube: &Unicube) -> Option<Reconstruction> {
+        let wanted = self.settings.reconstruct;
+        wanted.then(|| Reconstruction::new(cube, self.folded))
     }
 
     /// An empty sum of one node.
@@ -105,10 +112,15 @@ impl Plan {
         provenance: &Provenance,
     ) -> StructureTable {
         let cube = Unicube::new(self.settings.face);
+        let filter = self.filter(&cube);
         // One map at a time and thread is copied, to be folded.
         let maps: Vec<_> = tallies
             .par_iter()
             .map(|tally| {
+                if let Some(filter) = &filter {
+                    let maps = filter.maps(tally);
+                    return (maps.flux, maps.error, tally.ledger());
+                }
                 let mut tally = tally.clone();
                 if self.folded {
                     tally.fold(&cube);

@@ -4,6 +4,7 @@ use super::content::Recipe;
 use super::goal::{Ended, Goal, first_check};
 use super::noise::Norm;
 use super::plan::Plan;
+use super::reconstruct::Reconstruction;
 use super::settings::check;
 use super::sums_file::Header;
 use super::tally::Tally;
@@ -30,6 +31,7 @@ pub struct Bake<'a> {
     pub(super) nodes: Nodes,
     pub(super) cube: Unicube,
     pub(super) norm: Norm,
+    pub(super) filter: Option<Reconstruction>,
     pub(super) workers: Option<usize>,
     done: RwLock<Done>,
     pub(super) hand: Mutex<Hand>,
@@ -110,6 +112,8 @@ impl<'a> Bake<'a> {
         Ok(Self {
             nodes: plan.nodes(),
             norm: Norm::new(&cube, plan.folded),
+            filter: plan.filter(&cube),
+            filter: plan.filter(&cube),
             workers: None,
             done: RwLock::new(Done {
                 span: 0..0,

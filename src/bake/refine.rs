@@ -85,7 +85,8 @@ impl Bake<'_> {
             .enumerate()
             .map(|(unit, tally)| {
                 let node = unit % self.nodes.len();
-                self.norm.of(&self.cube, &self.nodes, node, tally)
+                let filter = self.filter.as_ref();
+                self.norm.of(&self.cube, &self.nodes, node, tally, filter)
             })
             .collect();
         *done = Done {
@@ -162,7 +163,8 @@ impl Bake<'_> {
                 sum.add(fresh);
                 fresh.clear();
                 let node = unit % self.nodes.len();
-                self.norm.of(&self.cube, &self.nodes, node, sum)
+                let filter = self.filter.as_ref();
+                self.norm.of(&self.cube, &self.nodes, node, sum, filter)
             })
             .collect();
         done.span.end = span.end;

@@ -27,6 +27,9 @@ pub struct Settings {
     pub fold: bool,
     /// Follow both what the surface reflects and what goes in, where light first meets the fiber.
     pub fork: bool,
+    /// Take noise off the maps of a table. Sums of photons, and so what is kept of a bake to go on
+    /// with, are never touched.
+    pub reconstruct: bool,
 }
 
 impl Settings {
@@ -37,6 +40,7 @@ impl Settings {
             max_events: 16,
             fold: false,
             fork: false,
+            reconstruct: false,
             ..Self::cone()
         }
     }
@@ -58,6 +62,7 @@ impl Settings {
             levels: absorption_levels(12),
             fold: true,
             fork: true,
+            reconstruct: true,
         }
     }
 }

@@ -24,11 +24,15 @@ pub(super) struct Rest {
 #[derive(Clone, Debug)]
 pub(super) struct Tally {
     levels: usize,
-    /// `texels[texel * levels + level]`: a photon touches one contiguous run.
+    /// `texels[texel * levels + level]`, what met pigment: a photon touches one contiguous run.
     texels: Vec<u64>,
-    /// Per texel, the sum of the squares of what left there at the clear level: its variance, as
-    /// photons are independent.
+    /// Per texel, the sum of the squares of that at the clear level: its variance, as photons are
+    /// independent.
     squares: Vec<u64>,
+    /// Per texel, what met no pigment, mostly reflections of the surface: the same at every level.
+    bare: Vec<u64>,
+    /// The sum of the squares of that.
+    bare_squares: Vec<u64>,
     photons: u64,
     absorbed: [u64; MAX_LEVELS],
     truncated: [u64; MAX_LEVELS],
@@ -42,6 +46,8 @@ impl Tally {
         Self {
             levels,
             squares: vec![0; texels],
+            bare: vec![0; texels],
+            bare_squares: vec![0; texels],
             texels: vec![0; texels * levels],
             photons: 0,
             absorbed: zero,
@@ -67,7 +73,7 @@ impl Tally {
     }
 
     /// Number of arrays in files.
-    pub(super) const ARRAYS: usize = 6;
+    pub(super) const ARRAYS: usize = 8;
 
     /// Names and shapes of the arrays in files. A change of names or meaning wants a new version of
     /// the file format.
@@ -81,6 +87,8 @@ impl Tally {
             ("lost", vec![levels]),
             ("texels", vec![6, res, res, levels]),
             ("squares", vec![6, res, res]),
+            ("bare", vec![6, res, res]),
+            ("bare_squares", vec![6, res, res]),
         ]
     }
 
@@ -93,6 +101,8 @@ impl Tally {
             &self.lost[..self.levels],
             &self.texels,
             &self.squares,
+            &self.bare,
+            &self.bare_squares,
         ]
     }
 
@@ -105,15 +115,49 @@ impl Tally {
             &mut self.lost[..self.levels],
             &mut self.texels,
             &mut self.squares,
+            &mut self.bare,
+            &mut self.bare_squares,
         ]
+    }
+
+    /// Texels of the map.
+    pub(super) fn texels(&self) -> usize {
+        self.bare.len()
+    }
+
+    /// Absorption levels.
+    pub(super) fn levels(&self) -> usize {
+        self.levels
+    }
+
+    /// What left through a texel without having met pigment, the same at all levels, and the sum of
+    /// its squares.
+    pub(super) fn bare(&self, texel: usize) -> (u64, u64) {
+        (self.bare[texel], self.bare_squares[texel])
+    }
+
+    /// What left through a texel and had met pigment, at the clear level, and the sum of its squares.
+    pub(super) fn colored(&self, texel: usize) -> (u64, u64) {
+        (self.texels[texel * self.levels], self.squares[texel])
+    }
+
+    /// What left through a texel and had met pigment, at every level.
+    pub(super) fn run(&self, texel: usize) -> &[u64] {
+        &self.texels[texel * self.levels..(texel + 1) * self.levels]
+    }
+
+    /// What left at a level.
+    pub(super) fn escaped(&self, level: usize) -> u64 {
+        let colored = self.texels.iter().skip(level).step_by(self.levels);
+        self.bare.iter().sum::<u64>() + colored.sum::<u64>()
     }
 
     /// What left through a texel at the clear level and the variance of that, in photons.
     pub(super) fn at_clear(&self, texel: usize) -> (f64, f64) {
         let photons = |sum: u64| sum as f64 / PHOTON as f64;
         (
-            photons(self.texels[texel * self.levels]),
-            photons(self.squares[texel]),
+            photons(self.bare[texel] + self.texels[texel * self.levels]),
+            photons(self.bare_squares[texel] + self.squares[texel]),
         )
     }
 
@@ -130,6 +174,11 @@ impl Tally {
     /// Part of a photon left through `texel`.
     pub(super) fn escape(&mut self, texel: usize, rest: Rest, levels: &[f64]) {
         let weights = self.arrive(rest, levels);
+        if rest.path == 0.0 {
+            self.bare[texel] += weights[0];
+            self.bare_squares[texel] += square(weights[0]);
+            return;
+        }
         let run = &mut self.texels[texel * self.levels..(texel + 1) * self.levels];
         for (sum, weight) in run.iter_mut().zip(weights) {
             *sum += weight;
@@ -167,8 +216,14 @@ impl Tally {
         for (a, b) in self.texels.iter_mut().zip(&other.texels) {
             *a += b;
         }
-        for (a, b) in self.squares.iter_mut().zip(&other.squares) {
-            *a += b;
+        for (sums, others) in [
+            (&mut self.squares, &other.squares),
+            (&mut self.bare, &other.bare),
+            (&mut self.bare_squares, &other.bare_squares),
+        ] {
+            for (a, b) in sums.iter_mut().zip(others) {
+                *a += b;
+            }
         }
         self.photons += other.photons;
         add(&mut self.absorbed, &other.absorbed);
@@ -181,7 +236,7 @@ impl Tally {
         (0..self.levels)
             .map(|k| Ledger {
                 emitted: self.photons * PHOTON,
-                escaped: self.texels.iter().skip(k).step_by(self.levels).sum(),
+                escaped: self.escaped(k),
                 absorbed: self.absorbed[k],
                 truncated: self.truncated[k],
                 lost: self.lost[k],
@@ -195,15 +250,20 @@ impl Tally {
         for texel in 0..cube.texels() {
             let mirror = cube.mirrored(texel);
             if texel < mirror {
+                let halve = |sums: &mut [u64], a: usize, b: usize| {
+                    let sum = sums[a] + sums[b];
+                    (sums[a], sums[b]) = (sum - sum / 2, sum / 2);
+                };
+                halve(&mut self.bare, texel, mirror);
                 for k in 0..self.levels {
-                    let (a, b) = (texel * self.levels + k, mirror * self.levels + k);
-                    let sum = self.texels[a] + self.texels[b];
-                    self.texels[b] = sum / 2;
-                    self.texels[a] = sum - sum / 2;
+                    let run = |texel| texel * self.levels + k;
+                    halve(&mut self.texels, run(texel), run(mirror));
                 }
                 // The variance of half a sum of two that are independent.
-                let squares = (self.squares[texel] + self.squares[mirror]) / 4;
-                (self.squares[texel], self.squares[mirror]) = (squares, squares);
+                for squares in [&mut self.squares, &mut self.bare_squares] {
+                    let quarter = (squares[texel] + squares[mirror]) / 4;
+                    (squares[texel], squares[mirror]) = (quarter, quarter);
+                }
             }
         }
     }
@@ -218,7 +278,8 @@ impl Tally {
                     .iter()
                     .skip(k)
                     .step_by(self.levels)
-                    .map(|&v| (v as f64 * scale) as f32),
+                    .zip(&self.bare)
+                    .map(|(&colored, &bare)| ((colored + bare) as f64 * scale) as f32),
             );
         }
         flux
@@ -226,11 +287,10 @@ impl Tally {
 
     /// Relative standard error of the clear level; infinite where nothing arrived.
     pub(super) fn error(&self) -> Vec<f32> {
-        let sums = self.texels.iter().step_by(self.levels);
-        sums.zip(&self.squares)
-            .map(|(&sum, &squares)| match sum {
-                0 => f32::INFINITY,
-                _ => ((squares as f64 * PHOTON as f64).sqrt() / sum as f64) as f32,
+        (0..self.texels())
+            .map(|texel| match self.at_clear(texel) {
+                (0.0, _) => f32::INFINITY,
+                (sum, squares) => (squares.sqrt() / sum) as f32,
             })
             .collect()
     }

@@ -98,18 +98,24 @@ impl Nodes {
     }
 }
 
-/// Maps `[0, 1]` to `[-pi/2, pi/2]`, evenly up to 60 degrees and twice as dense beyond: there the
-/// lobes change fastest. (Denser still starves the middle at 16 nodes.)
+/// Maps `[0, 1]` to `[-pi/2, pi/2]`, evenly up to 60 degrees and [`GRAZING`] times as dense beyond:
+/// there the lobes change fastest.
 fn grazing_warp(v: f64) -> f64 {
-    // In units of the coarse step: 60 + 2 * 30 = 120 degrees to each side.
-    let x = (2.0 * v - 1.0).abs() * 120.0;
-    let degrees = if x <= 60.0 {
+    const BEND: f64 = 60.0;
+    let end = BEND + GRAZING * (90.0 - BEND);
+    let x = (2.0 * v - 1.0).abs() * end;
+    let degrees = if x <= BEND {
         x
     } else {
-        60.0 + 0.5 * (x - 60.0)
+        BEND + (x - BEND) / GRAZING
     };
     degrees.to_radians().min(FRAC_PI_2).copysign(v - 0.5)
 }
+
+/// Density of nodes near grazing over that in the middle. What 16 nodes leave of error below 73 degrees
+/// (human, polar bear, red fox) and below 87 (human), in percent: at 1, 6.6, 3.3, 13 and 22; at 1.5, 6.8,
+/// 3.3, 15 and 16; at 2, 7.5, 3.8, 17 and 14.
+const GRAZING: f64 = 1.5;
 
 #[cfg(test)]
 mod tests {
