@@ -113,7 +113,6 @@ impl<'a> Bake<'a> {
             nodes: plan.nodes(),
             norm: Norm::new(&cube, plan.folded),
             filter: plan.filter(&cube),
-            filter: plan.filter(&cube),
             workers: None,
             done: RwLock::new(Done {
                 span: 0..0,

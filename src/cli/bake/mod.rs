@@ -74,6 +74,9 @@ pub(super) struct Args {
     /// Reflections, refractions and scatterings a photon may undergo; 16 in paper mode, else 1000.
     #[arg(long)]
     max_events: Option<u32>,
+    /// Leave the noise in the maps: plain means of the photons, as always in paper mode.
+    #[arg(long)]
+    raw: bool,
     /// Seed of geometry and photons.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -146,6 +149,7 @@ fn settings(args: &Args) -> Settings {
         bins: args.bins,
         face: args.face,
         max_events: args.max_events.unwrap_or(base.max_events),
+        reconstruct: base.reconstruct && !args.raw,
         seed: args.seed,
         ..base
     }
