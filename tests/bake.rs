@@ -176,7 +176,11 @@ fn a_stopped_bake_is_a_shorter_one() {
 
 #[test]
 fn an_error_goal_is_met_by_the_same_photons_every_time() {
-    let settings = Settings::cone();
+    // Filtered maps of a bare cylinder have less error than this from the first look on.
+    let settings = Settings {
+        reconstruct: false,
+        ..Settings::cone()
+    };
     let goal = Goal {
         error: Some(0.1),
         until: None,
