@@ -1,30 +1,51 @@
-//! Photons per second and core, per structure: `cargo bench --bench bake`, or `-- red-fox` for one
-//! species. The best of five rounds, which other load on the machine disturbs least.
+//! Photons per second and core, per structure: `cargo bench --bench bake`, or `-- red-fox moose` for
+//! these species, `-- --stations` for every station instead of the last one of a class.
+//!
+//! The best of five rounds by the time that the thread ran: other load on the machine disturbs it
+//! least.
 
 use std::time::Instant;
 use vair::bake::{Photon, fly};
 use vair::fiber::Fiber;
+use vair::species::Species;
 
 const PHOTONS: u64 = 80_000;
 const ROUNDS: u32 = 5;
+/// One of each kind of fiber: bare, scaled only, and by what fills the medulla.
+const SPECIES: [&str; 7] = [
+    "glass-cylinder",
+    "human",
+    "red-fox",
+    "mink",
+    "polar-bear",
+    "caribou",
+    "moose",
+];
 
 fn main() {
-    let wanted: Vec<String> = std::env::args()
+    let (flags, wanted): (Vec<String>, Vec<String>) = std::env::args()
         .skip(1)
-        .filter(|arg| !arg.starts_with("--"))
-        .collect();
-    for name in ["glass-cylinder", "human", "mink", "polar-bear", "red-fox"] {
-        if !wanted.is_empty() && !wanted.iter().any(|w| w == name) {
-            continue;
+        .partition(|arg| arg.starts_with("--"));
+    let all = flags.iter().any(|flag| flag == "--stations");
+    let names: Vec<&str> = match wanted.is_empty() {
+        true => SPECIES.to_vec(),
+        false => wanted.iter().map(String::as_str).collect(),
+    };
+    for name in names {
+        match vair::species::load(name, &[]) {
+            Ok(species) => measure(name, &species, all),
+            Err(error) => eprintln!("{name}: {error}"),
         }
-        let species = match vair::species::load(name, &[]) {
-            Ok(species) => species,
-            Err(error) => return eprintln!("{name}: {error}"),
+    }
+}
+
+fn measure(name: &str, species: &Species, all: bool) {
+    for class in &species.classes {
+        let first = match all {
+            true => 0,
+            false => class.stations.len().saturating_sub(1),
         };
-        for class in &species.classes {
-            let Some(station) = class.stations.last() else {
-                continue;
-            };
+        for station in &class.stations[first..] {
             let fiber = match Fiber::build(&station.structure, 0) {
                 Ok(fiber) => fiber,
                 Err(error) => return eprintln!("{name}: {error}"),
@@ -35,8 +56,9 @@ fn main() {
                 (seconds, events) = (seconds.min(took), met);
             }
             println!(
-                "{name:>16} {:<6} {:6.2} M photons/s a core, {:5.2} events a photon, {:4.0} ns an event",
+                "{name:>16} {:<6} {:4.2} {:6.3} M photons/s a core, {:5.2} events a photon, {:4.0} ns an event",
                 class.name,
+                station.at,
                 PHOTONS as f64 / seconds / 1e6,
                 events as f64 / PHOTONS as f64,
                 seconds * 1e9 / events as f64
@@ -47,7 +69,7 @@ fn main() {
 
 /// Flies photons from every inclination. Seconds and events.
 fn round(fiber: &Fiber) -> (f64, u64) {
-    let start = Instant::now();
+    let start = thread_seconds();
     let mut events = 0;
     for i in 0..PHOTONS {
         let bin = (i % 16) as f64 / 8.0 - 1.0;
@@ -58,5 +80,18 @@ fn round(fiber: &Fiber) -> (f64, u64) {
         };
         events += u64::from(fly(fiber, &photon, 1000).events);
     }
-    (start.elapsed().as_secs_f64(), events)
+    (thread_seconds() - start, events)
+}
+
+/// Time that this thread ran, where the system tells, else that of the clock.
+fn thread_seconds() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let ran = text.split_whitespace().next();
+    match ran.and_then(|n| n.parse::<f64>().ok()) {
+        Some(nanoseconds) => nanoseconds * 1e-9,
+        None => {
+            static START: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
+            START.elapsed().as_secs_f64()
+        }
+    }
 }

@@ -9,6 +9,7 @@ mod shape;
 
 pub(super) use shape::Shape;
 
+use super::cells::Cells;
 use super::convex::{Convex, Plane, Quadric, holds};
 use super::grid::Grid;
 use super::section::nearest_image;
@@ -48,6 +49,8 @@ pub(super) struct Bodies {
     /// Whether some bodies overlap, and whether some are islands.
     unions: bool,
     islands: bool,
+    /// The same bodies as cells that fill the medulla, for those that come so: much faster.
+    cells: Option<Box<Cells>>,
 }
 
 /// Mark of a quadric in the number of a face.
@@ -82,6 +85,7 @@ impl Bodies {
             owners: [Vec::new(), Vec::new()],
             grid,
             unions,
+            cells: None,
         };
         for (index, c) in convex.into_iter().enumerate() {
             let (p, q) = (store.planes.len() as u32, store.quadrics.len() as u32);
@@ -98,6 +102,19 @@ impl Bodies {
             });
         }
         store
+    }
+
+    /// Lets rays go from cell to cell. The voids in the cells must be these bodies.
+    pub(super) fn with_cells(self, cells: Option<Cells>) -> Self {
+        Self {
+            cells: cells.map(Box::new),
+            ..self
+        }
+    }
+
+    /// Whether rays go from cell to cell.
+    pub(super) fn fill(&self) -> bool {
+        self.cells.is_some()
     }
 
     /// Number of bodies.
@@ -138,6 +155,9 @@ impl Bodies {
         t1: f64,
         from: Option<u32>,
     ) -> Option<(f64, u32)> {
+        if let Some(cells) = &self.cells {
+            return cells.enter(origin, dir, t0, t1, from);
+        }
         let start = from.map(|face| self.owner(face));
         if self.islands {
             let within = match start {
@@ -177,6 +197,9 @@ impl Bodies {
     ///
     /// * `from`: the face that the ray starts on.
     pub(super) fn leave(&self, origin: DVec3, dir: DVec3, from: Option<u32>) -> Option<(f64, u32)> {
+        if let Some(cells) = &self.cells {
+            return cells.leave(origin, dir, from);
+        }
         let start = from.map(|face| self.owner(face));
         let (first, on) = match start {
             Some(index) if !self.bodies[index as usize].island => (index, from),
@@ -261,6 +284,9 @@ impl Bodies {
 
     /// Outward normal of a face at a point, of any length.
     pub(super) fn gradient(&self, face: u32, p: DVec3) -> DVec3 {
+        if let Some(cells) = &self.cells {
+            return cells.gradient(face, p);
+        }
         let index = (face & !QUADRIC) as usize;
         if face & QUADRIC == 0 {
             return self.planes[index].normal;

@@ -19,6 +19,7 @@ pub(super) use pieces::Pieces;
 pub(super) use rim::Rim;
 
 use super::bodies::Bodies;
+use super::cells::Cells;
 use super::convex::Convex;
 use super::froth::Froth;
 use super::ladder::{self, Ladder};
@@ -216,11 +217,15 @@ impl Medulla {
         room: &Room<'_>,
     ) -> Result<Voids, FiberError> {
         let (period, seed) = (room.period, room.seed);
-        let bodies = |all: Vec<Convex>, unions| {
+        let filling = |all: Vec<Convex>, unions, cells: Option<Cells>| {
             let kept = self.within_pieces(all, |c| c.center.z);
             let half = (self.reach * DVec2::new(section.a, section.b)).to_array();
-            Voids::Bodies(Box::new(Bodies::new(kept, period, half, unions)))
+            let bodies = Bodies::new(kept, period, half, unions);
+            // Cells fill the medulla as a whole, not in pieces.
+            let cells = cells.filter(|_| self.pieces.is_none());
+            Voids::Bodies(Box::new(bodies.with_cells(cells)))
         };
+        let bodies = |all: Vec<Convex>, unions| filling(all, unions, None);
         Ok(match structure.medulla.kind {
             MedullaKind::Ladder {
                 pitch_um,
@@ -260,9 +265,13 @@ impl Medulla {
                 false,
             ),
             MedullaKind::Lattice { cell_um, wall_um } => {
-                bodies(lattice::build(room, cell_um, wall_um)?, false)
+                let lattice = lattice::build(room, cell_um, wall_um)?;
+                filling(lattice.voids, false, lattice.cells)
             }
-            MedullaKind::SChannel { pitch_um } => bodies(channel::build(room, pitch_um), true),
+            MedullaKind::SChannel { pitch_um } => {
+                let channel = channel::build(room, pitch_um);
+                filling(channel.voids, true, channel.cells)
+            }
             MedullaKind::Cloisonne {
                 columns,
                 pitch_um,

@@ -4,6 +4,7 @@
 //! [`Fiber::period_um`]; rays may start and end at any z.
 
 mod bodies;
+mod cells;
 mod convex;
 mod cortex;
 mod crossing;

@@ -47,12 +47,21 @@ impl Fiber {
             }
             Region::Outside => self.enter(origin, dir, outer)?,
             Region::Cortex => {
-                let core = |t0, t1| self.core_hit(&rays, t0, t1, element);
-                let inward = match &self.surface {
-                    Surface::Scales(scales) if !self.section.is_ellipse() => {
+                // Voids lie within all scales: what else a ray from one meets there comes first.
+                let deep = self.section.is_ellipse() && matches!(element, Some(Element::Void(_)));
+                let found = deep
+                    .then(|| self.core_hit(&rays, 0.0, f64::INFINITY, element))
+                    .flatten();
+                let core = |t0, t1| match deep {
+                    true => None,
+                    false => self.core_hit(&rays, t0, t1, element),
+                };
+                let inward = match (found, &self.surface) {
+                    (Some(hit), _) => Inward::Core(hit),
+                    (None, Surface::Scales(scales)) if !self.section.is_ellipse() => {
                         scales.leave_around(&rays.unit, outer, core)
                     }
-                    surface => surface.leave(&rays.unit, outer, core),
+                    (None, surface) => surface.leave(&rays.unit, outer, core),
                 };
                 match inward {
                     Inward::Outer(hit) => self.outer_hit(&rays, hit, Region::Outside),

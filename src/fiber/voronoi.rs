@@ -142,6 +142,8 @@ pub(super) struct PolyFace {
     pub(super) normal: DVec3,
     pub(super) offset: f64,
     pub(super) corners: Vec<DVec3>,
+    /// The neighbor that cut it; `None` for a face of the cuboid.
+    pub(super) neighbor: Option<usize>,
 }
 
 impl Polyhedron {
@@ -162,6 +164,7 @@ impl Polyhedron {
                 normal,
                 offset: half[axis],
                 corners: corners.to_vec(),
+                neighbor: None,
             }
         });
         Self {
@@ -169,8 +172,8 @@ impl Polyhedron {
         }
     }
 
-    /// Cuts away what lies beyond `normal . p = offset`.
-    pub(super) fn clip(&mut self, normal: DVec3, offset: f64) {
+    /// Cuts away what lies beyond `normal . p = offset`, where a neighbor begins.
+    pub(super) fn clip(&mut self, normal: DVec3, offset: f64, neighbor: usize) {
         let beyond = |p: DVec3| normal.dot(p) - offset;
         if self.corners().all(|p| beyond(p) <= 0.0) {
             return;
@@ -203,6 +206,7 @@ impl Polyhedron {
             normal,
             offset,
             corners: rim,
+            neighbor: Some(neighbor),
         });
     }
 
@@ -239,7 +243,7 @@ mod tests {
                     let whole = DVec3::new(f64::from(i), f64::from(j), f64::from(k));
                     for at in [whole, whole + 0.5] {
                         if at != DVec3::ZERO {
-                            p.clip(at.normalize(), 0.5 * at.length());
+                            p.clip(at.normalize(), 0.5 * at.length(), 0);
                         }
                     }
                 }

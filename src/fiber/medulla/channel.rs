@@ -6,6 +6,7 @@
 //! The thin end of a disc stops short of the wall; there the gaps before and behind it are one.
 
 use super::Room;
+use crate::fiber::cells::{Cell, Cells, Face, Neighbor};
 use crate::fiber::convex::{Convex, Plane, Quadric};
 use crate::sampling::Rng;
 use glam::{DVec2, DVec3};
@@ -26,8 +27,16 @@ struct Gap {
     half: f64,
 }
 
+/// What fills the medulla: the voids, and the same by cells between the middles of the gaps.
+pub(super) struct Channel {
+    pub(super) voids: Vec<Convex>,
+    /// `None` where a disc is so thin that the gaps before and behind it meet, and in a section that
+    /// is no ellipse.
+    pub(super) cells: Option<Cells>,
+}
+
 /// The gaps of one period and what joins them. They overlap.
-pub(super) fn build(room: &Room<'_>, pitch_um: f64) -> Vec<Convex> {
+pub(super) fn build(room: &Room<'_>, pitch_um: f64) -> Channel {
     // An even number, or two discs of the same side meet where the period closes.
     let count = 2 * (0.5 * room.period / pitch_um).round().max(2.0) as usize;
     let pitch = room.period / count as f64;
@@ -83,20 +92,137 @@ pub(super) fn build(room: &Room<'_>, pitch_um: f64) -> Vec<Convex> {
         add(gap.z, gap.half + rise, &sides);
         // The slab between the two middles, beyond the thin end of the disc between them: where the
         // gaps come nearest, which is where this one rises.
-        let toward = gap.slope.normalize_or_zero();
+        let (toward, thin) = gap.thin_end(semi);
         let (middle, between) = (0.5 * (gap.z + next.z), 0.5 * (next.z - gap.z));
         let sides = [
             tilted(next.slope, between, 1.0),
             tilted(gap.slope, between, -1.0),
             Plane {
-                normal: (-toward).extend(0.0),
-                offset: -THIN_END * (toward * semi).length(),
+                normal: -toward.extend(0.0),
+                offset: -thin,
             },
         ];
         let rise = rise.max((next.slope * semi).length());
         add(middle, between + rise, &sides);
     }
-    bodies
+    Channel {
+        voids: bodies,
+        cells: match room.edge {
+            None => fill(&gaps, semi, room.period),
+            Some(_) => None,
+        },
+    }
+}
+
+impl Gap {
+    /// Direction of the thin end of the disc above the gap, and how far out it is.
+    fn thin_end(&self, semi: DVec2) -> (DVec2, f64) {
+        let toward = self.slope.normalize_or_zero().as_vec2().as_dvec2();
+        // As single precision has it: see `Face::new`.
+        let thin = THIN_END * (toward * semi).length();
+        (toward, f64::from(thin as f32))
+    }
+
+    /// z of its lower end (-1), its middle (0) or its upper end (1) on the axis.
+    fn level(&self, side: f64) -> f64 {
+        self.z + side * self.half
+    }
+}
+
+/// Between the middles of two gaps lie, on the disc's side of its thin end, half a gap, the disc and
+/// half a gap, and beyond it the channel.
+fn fill(gaps: &[Gap], semi: DVec2, period: f64) -> Option<Cells> {
+    let n = gaps.len();
+    let mut cells = Vec::with_capacity(4 * n);
+    for (k, &gap) in gaps.iter().enumerate() {
+        let mut next = gaps[(k + 1) % n];
+        if k + 1 == n {
+            next.z += period;
+        }
+        let (toward, thin) = gap.thin_end(semi);
+        if !is_whole(gap, next, semi, (toward, thin)) {
+            return None;
+        }
+        let middle = 0.5 * (gap.z + next.z);
+        let here = |cells: &[usize]| -> Vec<Neighbor> {
+            cells.iter().map(|c| Neighbor::new(4 * k + c, 0)).collect()
+        };
+        // Whichever of these two of the next gap is there.
+        let others = |up: bool, cell: usize| -> Vec<Neighbor> {
+            let (index, wrap) = match (up, k) {
+                (true, _) if k + 1 == n => (0, 1),
+                (true, _) => (k + 1, 0),
+                (false, 0) => (n - 1, -1),
+                (false, _) => (k - 1, 0),
+            };
+            [cell, BEYOND]
+                .map(|c| Neighbor::new(4 * index + c, wrap))
+                .to_vec()
+        };
+        let plane = |gap: &Gap, level: f64, side: f64, next: Vec<Neighbor>| {
+            let Plane { normal, offset } =
+                tilted(gap.slope, side * (gap.level(level) - middle), side);
+            Face::new(normal, offset, offset, next)
+        };
+        let end =
+            |side: f64, next| Face::new(side * toward.extend(0.0), side * thin, side * thin, next);
+        let kinds = [
+            (
+                plane(&gap, 0.0, -1.0, others(false, UPPER)),
+                plane(&gap, 1.0, 1.0, here(&[DISC])),
+                end(1.0, here(&[BEYOND])),
+            ),
+            (
+                plane(&gap, 1.0, -1.0, here(&[LOWER])),
+                plane(&next, -1.0, 1.0, here(&[UPPER])),
+                end(1.0, here(&[BEYOND])),
+            ),
+            (
+                plane(&next, -1.0, -1.0, here(&[DISC])),
+                plane(&next, 0.0, 1.0, others(true, LOWER)),
+                end(1.0, here(&[BEYOND])),
+            ),
+            (
+                plane(&gap, 0.0, -1.0, others(false, UPPER)),
+                plane(&next, 0.0, 1.0, others(true, LOWER)),
+                end(-1.0, here(&[LOWER, DISC, UPPER])),
+            ),
+        ];
+        for (kind, (below, above, end)) in kinds.into_iter().enumerate() {
+            cells.push(Cell {
+                center: DVec3::Z * middle,
+                faces: vec![below, above, end],
+                air: kind != DISC,
+                rim: true,
+            });
+        }
+    }
+    Some(Cells::new(&cells, semi, period, period / n as f64))
+}
+
+/// Cells between the middles of two gaps.
+const LOWER: usize = 0;
+const DISC: usize = 1;
+const UPPER: usize = 2;
+const BEYOND: usize = 3;
+
+/// Whether the disc between two gaps has a thickness wherever it is, and the gaps' middles a distance.
+fn is_whole(gap: Gap, next: Gap, semi: DVec2, (toward, thin): (DVec2, f64)) -> bool {
+    let rise = next.slope - gap.slope;
+    let apart = next.z - gap.z - (rise * semi).length();
+    let thickness = |p: DVec2| next.level(-1.0) - gap.level(1.0) + rise.dot(p);
+    // A linear function is least where the outline faces down, or, if the disc is not there, at the ends
+    // of its edge.
+    let lowest = -semi * (rise * semi).normalize_or_zero();
+    let (along, reach) = (toward.perp(), (toward * semi).length());
+    let across = (1.0 - THIN_END * THIN_END).sqrt();
+    let foot = semi * semi * toward * (thin / (reach * reach));
+    let chord = along * (across * semi.x * semi.y / reach);
+    let points = [lowest, foot + chord, foot - chord];
+    apart > 0.0
+        && points
+            .iter()
+            .all(|&p| toward.dot(p) > thin * (1.0 + 1e-6) || thickness(p) > 0.0)
 }
 
 /// The half-space below (`side` 1) or above (-1) the plane `z = slope . xy + side * half`.
@@ -104,7 +230,8 @@ fn tilted(slope: DVec2, half: f64, side: f64) -> Plane {
     let normal = side * DVec3::new(-slope.x, -slope.y, 1.0);
     let length = normal.length();
     Plane {
-        normal: normal / length,
+        // As single precision has it: see `Face::new`.
+        normal: (normal / length).as_vec3().as_dvec3(),
         offset: half / length,
     }
 }

@@ -26,6 +26,10 @@ impl Medulla {
                     .then(|| froth.enter(rays.origin, rays.dir, t0, t1, from))
                     .flatten()
             }
+            // Cells know their outline, and a ray from one where it is.
+            Voids::Bodies(bodies) if bodies.fill() => {
+                bodies.enter(rays.origin, rays.dir, t0, t1, from)
+            }
             Voids::Bodies(bodies) => {
                 let (a, b) = rays.unit.inside_circle(self.reach)?;
                 let (t0, t1) = (t0.max(a), t1.min(b));

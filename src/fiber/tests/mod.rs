@@ -1,5 +1,6 @@
 //! Structures like those of real animals, and what every fiber must keep to.
 
+mod cells;
 mod kinds;
 mod library;
 mod light;
