@@ -68,6 +68,10 @@ impl Grain {
     /// the scattering coefficient. Absorption is that of the keratin between them: in a field that is
     /// the same in all directions, rays pass every medium in the proportion of its volume times its
     /// index squared, and the medium here has the keratin's index everywhere.
+    ///
+    /// Between flat walls the field is not: light that runs within a wall meets hardly any from outside.
+    /// A lattice of black hair sends a fifth more back than its medium; no animal of the library has cells
+    /// so many that the medium would stand for them.
     fn medium(&self, pigment: f64) -> Homogeneous {
         Homogeneous {
             scattering_per_um: 0.25 * self.surface,

@@ -88,8 +88,9 @@ fn the_mean_path_through_keratin_is_that_of_an_even_field() {
     }
 }
 
-/// Where cells give way to a medium both send the same light back, from clear to black: bubbles of one
-/// size and of many, polyhedra, columns of cells.
+/// Where bubbles of one size or of many give way to a medium both send the same light back, from clear to
+/// black. Not so cells with flat walls: light that runs within a wall meets hardly any from outside, so that
+/// they absorb less than the medium.
 #[test]
 fn a_medium_and_its_cells_have_the_same_albedo() {
     let amorphous = |radius_um, air_fraction| MedullaKind::Amorphous {
@@ -103,15 +104,6 @@ fn a_medium_and_its_cells_have_the_same_albedo() {
             radius_um: 1.6,
             radius_sigma: 0.4,
             air_fraction: 0.35,
-        },
-        MedullaKind::Lattice {
-            cell_um: 5.0,
-            wall_um: 0.3,
-        },
-        MedullaKind::Multiserial {
-            cell_um: 4.0,
-            pitch_um: 4.0,
-            septum_um: 0.6,
         },
     ];
     for kind in kinds {
