@@ -27,7 +27,7 @@ pub(super) struct Args {
     /// How much work goes into the pictures.
     #[arg(long, value_enum, default_value = "preview")]
     quality: QualityArg,
-    /// What a row of the sheet shows.
+    /// What a row of the sheet shows; of the pages, which pictures are drawn if they are there already.
     #[arg(
         long,
         value_enum,
@@ -45,6 +45,7 @@ pub(super) struct Args {
     #[arg(long)]
     threads: Option<usize>,
     /// Writes the library as Markdown into this folder: an index, a page an animal, small pictures.
+    /// Pages of other built-in animals that are there stay, and stay in the index.
     #[arg(long, value_name = "FOLDER")]
     pages: Option<PathBuf>,
     /// Where the contact sheet goes: a .png file. May repeat.
@@ -237,10 +238,16 @@ impl Work<'_> {
         let count: usize = animals.iter().map(|(s, _)| pictures_of(s).len()).sum();
         self.console.begin("pages", count as u64, "pictures");
         let mut done = 0;
+        let wanted: Vec<Column> = self.args.columns.iter().map(|&c| c.into()).collect();
         'animals: for (species, origins) in animals {
             self.console.note(&species.name);
             for picture in pictures_of(species) {
                 let (column, size) = (picture.column, picture.size());
+                let path = images.join(picture.file(species));
+                if !wanted.contains(&column) && path.exists() {
+                    self.console.advance(1);
+                    continue;
+                }
                 let drawn = self
                     .studio
                     .picture(column, species, picture.class, size, Legend::Bar);
@@ -249,7 +256,6 @@ impl Work<'_> {
                 }
                 match drawn {
                     Ok(canvas) => {
-                        let path = images.join(picture.file(species));
                         canvas.write_small_png(&path, PAGE_COLORS)?;
                     }
                     Err(error) => refused.push(self.refusal(species, column, error)),
@@ -266,8 +272,12 @@ impl Work<'_> {
             done += 1;
         }
         self.console.finish();
-        let finished: Vec<&Species> = animals[..done].iter().map(|(s, _)| s).collect();
-        let index = gallery::index(&finished, &self.command(folder));
+        let mut finished: Vec<&Species> = animals[..done].iter().map(|(s, _)| s).collect();
+        let others = others(folder, &finished)?;
+        finished.extend(&others);
+        let order: Vec<&str> = species::ids().collect();
+        finished.sort_by_key(|s| order.iter().position(|id| *id == s.id));
+        let index = gallery::index(&finished, &self.command(folder, others.is_empty()));
         AtomicFile::write_all_to(&folder.join("README.md"), index.as_bytes())?;
         if done < animals.len() {
             let message = format!("stopped; {done} of {} pages are there", animals.len());
@@ -287,9 +297,9 @@ impl Work<'_> {
     }
 
     /// The command line that writes the pages again.
-    fn command(&self, folder: &Path) -> String {
+    fn command(&self, folder: &Path, these_alone: bool) -> String {
         let mut command = "vair gallery".to_owned();
-        if !self.args.species.is_empty() {
+        if !self.args.species.is_empty() && these_alone {
             command += &format!(" --species {}", self.args.species.join(","));
         }
         if matches!(self.args.quality, QualityArg::Full) {
@@ -297,4 +307,12 @@ impl Work<'_> {
         }
         format!("{command} --pages {}", folder.display())
     }
+}
+
+/// The built-in animals that have a page in a folder, others than some.
+fn others(folder: &Path, than: &[&Species]) -> Result<Vec<Species>, Failure> {
+    let has_page =
+        |id: &&str| than.iter().all(|s| s.id != *id) && folder.join(format!("{id}.md")).exists();
+    let load = |id: &str| Ok(species::load(id, &[])?);
+    species::ids().filter(has_page).map(load).collect()
 }
