@@ -84,7 +84,7 @@ impl HairClass {
                     (0.05, "cream"),
                     (0.15, "buff"),
                     (0.25, "tan"),
-                    (0.5, "orange"),
+                    (0.9, "orange"),
                 ],
                 "rust",
             )
@@ -161,9 +161,9 @@ mod tests {
         assert_eq!(word(0.3, 0.1), "brown");
         assert_eq!(word(1.3, 0.1), "dark brown");
         assert_eq!(word(0.02, 0.8), "orange");
-        assert_eq!(word(0.02, 1.6), "rust");
+        assert_eq!(word(0.02, 2.4), "rust");
         for (id, words) in [
-            ("red-fox", &["black-brown", "orange", "brown"][..]),
+            ("red-fox", &["black-brown", "orange", "dark brown"][..]),
             ("wolf", &["black", "white", "black", "white"]),
             ("mink", &["dark brown"]),
             ("polar-bear", &["white"]),
