@@ -107,7 +107,7 @@ impl HairClass {
                     (0.2, "pale brown"),
                     (0.3, "gray-brown"),
                     (0.8, "brown"),
-                    (1.8, "dark brown"),
+                    (3.0, "dark brown"),
                 ],
                 "black-brown",
             )
@@ -163,7 +163,7 @@ mod tests {
         assert_eq!(word(0.02, 0.8), "orange");
         assert_eq!(word(0.02, 2.4), "rust");
         for (id, words) in [
-            ("red-fox", &["black-brown", "orange", "dark brown"][..]),
+            ("red-fox", &["dark brown", "orange", "dark brown"][..]),
             ("wolf", &["black", "white", "black", "white"]),
             ("mink", &["dark brown"]),
             ("polar-bear", &["white"]),
