@@ -1,6 +1,6 @@
 //! Hair models fitted to tables: how well can a shader in closed form stand for a baked fiber?
 //!
-//! The error that is made least is the same relative L2 distance of S as in [`super::compare`], over
+//! The error that is made least is the same relative L2 distance of S as in [`super::compare()`], over
 //! bins of 2 by 5 degrees, of all channels together; index, roughness and tilt are common to all channels,
 //! absorption is each channel's own.
 
