@@ -232,6 +232,6 @@ fn memory_is_refused_before_the_work_and_threads_adapt_to_it() {
     assert!(!desk.at("out.exr").exists());
     desk.run(bake);
     let free = desk.read("out.exr");
-    desk.run(&format!("{bake} --memory 150M"));
+    desk.run(&format!("{bake} --memory 200M"));
     assert!(free == desk.read("out.exr"));
 }

@@ -110,11 +110,17 @@ fn assert_bins(found: &[f64], photons: u64, density: impl Fn(f64) -> f64, what: 
     }
 }
 
-fn table(structure: &Structure, photons: u64) -> StructureTable {
-    let settings = Settings {
+/// Raw: the filter of noise decides cell by cell, and rounding may tip a decision.
+fn settings(photons: u64) -> Settings {
+    Settings {
         photons,
+        reconstruct: false,
         ..Settings::cone()
-    };
+    }
+}
+
+fn table(structure: &Structure, photons: u64) -> StructureTable {
+    let settings = settings(photons);
     let fiber = Fiber::build(structure, 0).unwrap();
     let baked = bake(
         &fiber,
@@ -127,10 +133,7 @@ fn table(structure: &Structure, photons: u64) -> StructureTable {
 }
 
 fn undyed(structure: &Structure, photons: u64) -> Undyed {
-    let settings = Settings {
-        photons,
-        ..Settings::cone()
-    };
+    let settings = settings(photons);
     let cancel = Cancel::default();
     let provenance = Provenance::default();
     find_or_bake(structure, &settings, provenance, None, &Silent, &cancel)
