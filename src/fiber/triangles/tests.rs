@@ -2,43 +2,16 @@
 
 use super::solid::Solid;
 use super::topology::close;
+use super::twist::mesh_of;
 use crate::fiber::tests::all;
 use crate::fiber::{Fiber, MeshPart, Region};
-use crate::mesh_file::{LoadedMesh, RawMesh};
 use crate::sampling::Rng;
-use crate::species::{FiberMesh, MeshAxis, MeshEnds, MeshRole, Structure};
+use crate::species::{FiberMesh, Structure};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// The parts of a fiber as if read from a file of single precision.
 fn as_mesh(parts: &[MeshPart], period_um: f64) -> FiberMesh {
-    let mut raw = RawMesh::default();
-    let mut roles = Vec::new();
-    for part in parts {
-        let base = raw.positions.len() as u32;
-        raw.positions
-            .extend(part.points.iter().map(|p| p.as_vec3()));
-        let index = raw.part_named(part.name);
-        roles.push(match part.name {
-            "cuticle" => MeshRole::Cuticle,
-            "riser" => MeshRole::Riser,
-            "cortex" => MeshRole::Cortex,
-            "medulla" => MeshRole::Medulla,
-            _ => MeshRole::Void,
-        });
-        for t in &part.triangles {
-            raw.add_polygon(&t.map(|v| v + base), index);
-        }
-    }
-    FiberMesh {
-        file: "test.glb".to_owned(),
-        period_um: Some(period_um),
-        ends: MeshEnds::Open,
-        unit_um: 1.0,
-        axis: MeshAxis::Z,
-        roles,
-        content: LoadedMesh::new(raw, false),
-    }
+    mesh_of(parts, period_um, "test.glb")
 }
 
 fn remodeled(fiber: &Fiber) -> Fiber {

@@ -56,6 +56,20 @@ pub(crate) fn twisted(parts: &[MeshPart], period_um: f64, twist: f64) -> FiberMe
     let step = (STEP / twist.abs()).max(LEAST_STEP_UM);
     // The ends of the period are among the planes, or their rims would not match.
     let step = period_um / (period_um / step).ceil();
+    let parts: Vec<MeshPart> = (parts.iter())
+        .map(|part| {
+            let mut part = sliced(part, step);
+            for p in &mut part.points {
+                *p = turned(*p, twist * p.z);
+            }
+            part
+        })
+        .collect();
+    mesh_of(&parts, period_um, "the twisted fiber")
+}
+
+/// The parts of a fiber as if read from a file of single precision.
+pub(super) fn mesh_of(parts: &[MeshPart], period_um: f64, file: &str) -> FiberMesh {
     let mut raw = RawMesh::default();
     let mut roles = Vec::new();
     for part in parts {
@@ -68,15 +82,14 @@ pub(crate) fn twisted(parts: &[MeshPart], period_um: f64, twist: f64) -> FiberMe
             _ => MeshRole::Void,
         });
         let base = raw.positions.len() as u32;
-        let sliced = sliced(part, step);
-        let at = |p: &DVec3| turned(*p, twist * p.z).as_vec3();
-        raw.positions.extend(sliced.points.iter().map(at));
-        for t in &sliced.triangles {
+        raw.positions
+            .extend(part.points.iter().map(|p| p.as_vec3()));
+        for t in &part.triangles {
             raw.add_polygon(&t.map(|v| v + base), index);
         }
     }
     FiberMesh {
-        file: "the twisted fiber".to_owned(),
+        file: file.to_owned(),
         period_um: Some(period_um),
         ends: MeshEnds::Open,
         unit_um: 1.0,
