@@ -8,6 +8,8 @@
 
 mod faces;
 mod near;
+#[cfg(test)]
+mod tests;
 mod walk;
 
 use super::section::nearest_image;

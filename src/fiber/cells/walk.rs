@@ -45,7 +45,11 @@ impl Cells {
             let limit = limit.unwrap_or(t1);
             if room.air && !std::mem::take(&mut left) {
                 match self.void(room, place.at.as_vec3(), away) {
-                    Some((reach, _)) if reach <= 0.0 => return Some((t, OUTLINE | place.cell)),
+                    // Past the outline a ray is in a void unless a wall is between: that a face
+                    // without one is still ahead is single precision's error.
+                    Some((reach, slot)) if reach <= 0.0 || !self.walled(slot) => {
+                        return Some((t, OUTLINE | place.cell));
+                    }
                     Some(met) => {
                         let t = t + self.reach(met, false, place.at, dir);
                         return (t < limit).then_some((t, met.1 as u32));
@@ -142,6 +146,13 @@ impl Cells {
             least.take(Vec4::select(rate.cmpgt(Vec4::ZERO), t, Vec4::INFINITY), k);
         }
         least.slot(room)
+    }
+
+    /// Whether keratin is between the void of a cell and a face of it.
+    #[inline]
+    fn walled(&self, slot: usize) -> bool {
+        let (block, lane) = (&self.blocks[slot / 4], slot % 4);
+        block.void[lane] < block.cell[lane]
     }
 
     /// How far it is to the face of a cell, or of the void in it, that single precision found.
