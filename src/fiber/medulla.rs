@@ -199,12 +199,12 @@ impl Medulla {
         if medium.is_none() {
             core.voids = core.build(structure, section, &room)?;
         } else if let Some(pieces) = &core.pieces {
-            let cylinders = match &edge {
-                Some(edge) => pieces.cylinders_within(edge),
-                None => pieces.cylinders(ratio * axes),
+            let rods = match &edge {
+                Some(edge) => pieces.rods_within(edge),
+                None => pieces.rods(ratio * axes),
             };
             let half = (core.reach * axes).to_array();
-            core.voids = Voids::Bodies(Box::new(Bodies::new(cylinders, period, half, true)));
+            core.voids = Voids::Bodies(Box::new(Bodies::new(rods, period, half, true)));
         }
         Ok(core)
     }

@@ -63,9 +63,9 @@ pub(super) fn draw(subject: &Subject, area: (usize, usize), raster: &Raster) -> 
     })
 }
 
-/// The plane of one period that cuts most of the voids.
+/// The plane of one period that cuts most of the medulla's voids or medium.
 pub(super) fn richest_plane(fiber: &Fiber) -> f64 {
-    let voids = |z: f64| {
+    let medulla = |z: f64| {
         let probes = (0..64).map(|i| {
             let r = 0.9 * f64::from(i / 8) / 8.0;
             let phi = TAU * f64::from(i % 8) / 8.0;
@@ -73,12 +73,12 @@ pub(super) fn richest_plane(fiber: &Fiber) -> f64 {
             DVec3::new(cos, sin, 0.0) * (fiber.bounding_radius_um() * r) + z * DVec3::Z
         });
         probes
-            .filter(|&p| fiber.region_at(p) == Region::Void)
+            .filter(|&p| matches!(fiber.region_at(p), Region::Void | Region::Medulla))
             .count()
     };
     let period = fiber.period_um();
     (0..256)
         .map(|i| period * f64::from(i) / 256.0)
-        .max_by_key(|&z| voids(z))
+        .max_by_key(|&z| medulla(z))
         .unwrap_or(0.0)
 }

@@ -70,19 +70,19 @@ impl Pieces {
         &self.spans
     }
 
-    /// The pieces as cylinders that overlap, each shorter than half a period.
-    pub(super) fn cylinders(&self, semi: DVec2) -> Vec<Convex> {
+    /// The pieces as rods with round ends, in parts that overlap, each shorter than half a period.
+    pub(super) fn rods(&self, semi: DVec2) -> Vec<Convex> {
         let outline = Quadric::ellipsoid(DVec3::ZERO, semi.extend(f64::INFINITY));
         let disc = |half: f64| Convex {
             half: semi.extend(half),
             quadrics: vec![outline],
             ..Convex::default()
         };
-        self.stacked(&[&disc])
+        self.stacked(semi, &[&disc])
     }
 
     /// As much of what an edge holds.
-    pub(super) fn cylinders_within(&self, edge: &Edge) -> Vec<Convex> {
+    pub(super) fn rods_within(&self, edge: &Edge) -> Vec<Convex> {
         let parts = edge.parts();
         let disc = |part: &Part, half: f64| Convex {
             half: part.half.extend(half),
@@ -94,16 +94,26 @@ impl Pieces {
             .map(|part| move |half| disc(part, half))
             .collect();
         let discs: Vec<&dyn Fn(f64) -> Convex> = discs.iter().map(|d| d as _).collect();
-        self.stacked(&discs)
+        let reach = parts
+            .iter()
+            .fold(DVec2::ZERO, |all, part| all.max(part.half));
+        self.stacked(reach, &discs)
     }
 
-    /// Discs of given half height, one upon the other.
-    fn stacked(&self, discs: &[&dyn Fn(f64) -> Convex]) -> Vec<Convex> {
+    /// Discs of given half height, one upon the other, within a spindle that rounds the ends of a piece.
+    ///
+    /// * `semi`: semi-axes of the discs.
+    fn stacked(&self, semi: DVec2, discs: &[&dyn Fn(f64) -> Convex]) -> Vec<Convex> {
         const OVERLAP_UM: f64 = 0.5;
+        // Thickness of the spindle over that of the piece: at 1 a piece is a lens all over, at much
+        // more its ends are as good as flat, which no micrograph shows.
+        const SPINDLE: f64 = 1.25;
         let mut all = Vec::new();
         for &[z0, z1] in &self.spans {
             let count = (4.0 * (z1 - z0) / self.period).ceil().max(1.0);
             let step = (z1 - z0) / count;
+            let middle = 0.5 * (z0 + z1);
+            let spindle = (SPINDLE * semi).extend(0.5 * (z1 - z0));
             for k in 0..count as u32 {
                 let begin = z0 + f64::from(k) * step;
                 let end = (begin + step + OVERLAP_UM).min(z1);
@@ -116,6 +126,8 @@ impl Pieces {
                     let mut disc = disc(half);
                     disc.center = DVec3::Z * (begin + half);
                     disc.planes.extend([plane(DVec3::Z), plane(DVec3::NEG_Z)]);
+                    let seen = DVec3::Z * middle - disc.center;
+                    disc.quadrics.push(Quadric::ellipsoid(seen, spindle));
                     all.push(disc);
                 }
             }
