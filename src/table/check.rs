@@ -50,7 +50,7 @@ impl StructureTable {
             "{} ledgers for {bins} nodes and {levels} levels",
             self.ledger.len()
         );
-        check_error(&self.error, bins * self.texels())?;
+        check_error(self.error.iter(), bins * self.texels())?;
         for node in 0..bins {
             for level in 0..levels {
                 let ledger = self.ledger(node, level);
@@ -91,7 +91,7 @@ impl ScatterMaps {
             "{} ledgers for {bins} nodes; one or three a node are possible",
             self.ledger.len()
         );
-        check_error(&self.error, self.rgb.len())?;
+        check_error(self.error.as_flattened().iter(), 3 * self.rgb.len())?;
         for (node, ledgers) in self.ledger.chunks(self.bakes()).enumerate() {
             for ledger in ledgers {
                 check_ledger(ledger, node)?;
@@ -187,14 +187,17 @@ fn check_flux(flux: impl Iterator<Item = f32>, node: usize) -> Result<f64, Table
     Ok(sum)
 }
 
-fn check_error(error: &[f32], expected: usize) -> Result<(), TableError> {
+fn check_error<'a>(
+    mut error: impl ExactSizeIterator<Item = &'a f32>,
+    expected: usize,
+) -> Result<(), TableError> {
     ensure!(
         error.len() == expected,
-        "{} error values for {expected} texels",
+        "{} error values, not {expected}",
         error.len()
     );
     ensure!(
-        error.iter().all(|e| *e >= 0.0),
+        error.all(|e| *e >= 0.0),
         "an error value is negative or not a number"
     );
     Ok(())

@@ -14,9 +14,9 @@ pub struct ScatterMaps {
     /// `rgb[node * texels + texel]`: share of the intercepted light that leaves through the texel,
     /// in the node's frame.
     pub rgb: Vec<[f32; 3]>,
-    /// `error[node * texels + texel]`: relative standard error of the undyed map, infinity where no
-    /// photon arrived.
-    pub error: Vec<f32>,
+    /// `error[node * texels + texel]`: relative standard error of each color, infinity where no photon
+    /// arrived, 0 if it is not known.
+    pub error: Vec<[f32; 3]>,
     /// Absorption of the cortex per micrometer, linear R, G, B: what it was dyed with.
     pub absorption_per_um: [f64; 3],
     /// Mean radius of the fiber, micrometers.

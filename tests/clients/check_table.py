@@ -52,7 +52,8 @@ def check(path):
         name = header["name"]
         if name != f"bin{k:02}":
             yield f"part {k} is called {name}"
-        if sorted(maps) != sorted(channels + ["error"]):
+        errors = ["error"] if structure else [f"error.{c}" for c in channels]
+        if sorted(maps) != sorted(channels + errors):
             yield f"{name} has channels {sorted(maps)}"
             continue
         edges.append((number(header, "theta_from_deg"), number(header, "theta_to_deg")))

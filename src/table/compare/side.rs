@@ -117,9 +117,8 @@ impl<'a> Side<'a> {
     ///
     /// The file tells the relative error of the clear level only. A photon that counts `w` at
     /// optical depth `tau` counts `w^2` at `2 tau`, so the variance at `tau` is that of the clear
-    /// level times the transmittance at `2 tau`. A dyed table's channels are taken to have the
-    /// relative error of the table that they were dyed from, which is a little too low where they
-    /// are dark.
+    /// level times the transmittance at `2 tau`. A dyed table's file tells the errors of its
+    /// colors.
     pub(in crate::table) fn flux(&self, channel: usize, node: usize, texel: usize) -> (f64, f64) {
         match self.table {
             TableRef::Structure(t) => {
@@ -144,7 +143,7 @@ impl<'a> Side<'a> {
             TableRef::Scatter(maps) => {
                 let i = node * self.cube.texels() + texel;
                 let flux = f64::from(maps.rgb[i][self.channels[channel]]);
-                let error = f64::from(maps.error[i]);
+                let error = f64::from(maps.error[i][self.channels[channel]]);
                 let deviation = if error.is_finite() { error * flux } else { 0.0 };
                 (flux, deviation * deviation)
             }

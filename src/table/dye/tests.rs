@@ -162,26 +162,6 @@ fn levels_come_back_exactly_and_flux_falls_with_absorption() {
     }
 }
 
-/// `cargo test --release -- --ignored --nocapture dye_speed`
-#[test]
-#[ignore = "a measurement"]
-fn dye_speed() {
-    let mixtures: Vec<Mixture> = (0..24_576)
-        .map(|i| vec![(0.5, 0.2), (2.0 + f64::from(i % 64) * 0.1, 0.8)])
-        .collect();
-    let mut table = table(&mixtures, bake_levels());
-    assert_eq!(table.res, 64);
-    table.nodes = Nodes::new(Mode::Cone, 16);
-    table.flux = table.flux.repeat(8);
-    table.error = table.error.repeat(8);
-    table.ledger = table.ledger.repeat(8);
-    for _ in 0..5 {
-        let start = std::time::Instant::now();
-        let maps = table.dye([0.004, 0.01, 0.03]).unwrap();
-        println!("{:?} {}", start.elapsed(), maps.rgb.len());
-    }
-}
-
 #[test]
 fn bad_requests_are_refused() {
     let clear = table(&[vec![(1.0, 1.0)]], vec![0.0]);

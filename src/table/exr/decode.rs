@@ -2,7 +2,7 @@
 
 use super::attributes::Attributes;
 use super::parts::Part;
-use super::{FORMAT, TableFile, level_channel};
+use super::{COLORS, FORMAT, TableFile, error_channel, level_channel};
 use crate::table::{Ledger, Mode, Nodes, Provenance, ScatterMaps, StructureTable, TableError};
 use std::f64::consts::FRAC_PI_2;
 
@@ -106,13 +106,9 @@ fn scatter(nodes: Nodes, parts: Vec<Part>, head: &Attributes) -> Result<ScatterM
     };
     for mut part in parts {
         maps.ledger.extend(ledger(&part.attributes, bakes)?);
-        expect_channels(&part, 4)?;
-        let r = take_channel(&mut part, "R")?;
-        let g = take_channel(&mut part, "G")?;
-        let b = take_channel(&mut part, "B")?;
-        let texels = r.iter().zip(&g).zip(&b);
-        maps.rgb.extend(texels.map(|((&r, &g), &b)| [r, g, b]));
-        maps.error.extend(take_channel(&mut part, "error")?);
+        expect_channels(&part, 6)?;
+        maps.rgb.extend(take_colors(&mut part, str::to_owned)?);
+        maps.error.extend(take_colors(&mut part, error_channel)?);
     }
     maps.check()?;
     Ok(maps)
@@ -221,6 +217,17 @@ fn take_channel(part: &mut Part, name: &str) -> Result<Vec<f32>, TableError> {
     let (_, samples) =
         found.ok_or_else(|| wrong(format!("part {} has no channel {name}", part.name)))?;
     Ok(std::mem::take(samples))
+}
+
+/// Three channels as one value a texel.
+fn take_colors(
+    part: &mut Part,
+    name: impl Fn(&str) -> String,
+) -> Result<Vec<[f32; 3]>, TableError> {
+    let [r, g, b] = COLORS.map(|color| take_channel(part, &name(color)));
+    let (r, g, b) = (r?, g?, b?);
+    let texels = r.iter().zip(&g).zip(&b);
+    Ok(texels.map(|((&r, &g), &b)| [r, g, b]).collect())
 }
 
 fn wrong(what: impl Into<String>) -> TableError {

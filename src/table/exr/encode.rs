@@ -2,7 +2,7 @@
 
 use super::attributes::Attributes;
 use super::parts::Part;
-use super::{FORMAT, level_channel};
+use super::{COLORS, FORMAT, error_channel, level_channel};
 use crate::table::{Ledger, Mode, Nodes, PHOTON, Provenance, ScatterMaps, StructureTable};
 
 /// The parts of a structure table.
@@ -31,19 +31,17 @@ pub(super) fn structure(table: &StructureTable) -> Vec<Part> {
 pub(super) fn scatter(maps: &ScatterMaps) -> Vec<Part> {
     let texels = maps.texels();
     let mut parts = parts(&maps.nodes, maps.res, |node, attributes| {
+        let errors = &maps.error[node * texels..(node + 1) * texels];
         let bakes = maps.bakes();
         put_ledger(attributes, &maps.ledger[node * bakes..(node + 1) * bakes]);
         attributes.list("albedo", maps.albedo(node));
-        let channel = |c: usize| maps.map(node).iter().map(|texel| texel[c]).collect();
-        vec![
-            ("R".to_owned(), channel(0)),
-            ("G".to_owned(), channel(1)),
-            ("B".to_owned(), channel(2)),
-            (
-                "error".to_owned(),
-                maps.error[node * texels..(node + 1) * texels].to_vec(),
-            ),
-        ]
+        let channel = |texels: &[[f32; 3]], c: usize| texels.iter().map(|rgb| rgb[c]).collect();
+        let colors = COLORS.iter().enumerate();
+        let flux = colors
+            .clone()
+            .map(|(c, name)| ((*name).to_owned(), channel(maps.map(node), c)));
+        let error = colors.map(|(c, name)| (error_channel(name), channel(errors, c)));
+        flux.chain(error).collect()
     });
     let head = &mut parts[0].attributes;
     head.text("kind", "scatter");

@@ -1,7 +1,7 @@
 //! Tables as OpenEXR files. The format is described in `docs/table-format.md`.
 //!
 //! One part a bin, each a unicube with its faces stacked from top to bottom; one 32-bit float
-//! channel an absorption level (`a00`, `a01`, ...) or `R`, `G`, `B`, and `error`. Everything else
+//! channel an absorption level (`a00`, `a01`, ...) and `error`, or `R`, `G`, `B` and an error each. Everything else
 //! is in attributes named `vair:...`.
 
 mod attributes;
@@ -135,3 +135,11 @@ fn level_channel(level: usize) -> String {
 
 #[cfg(test)]
 mod tests;
+
+/// Channels of a dyed table.
+const COLORS: [&str; 3] = ["R", "G", "B"];
+
+/// The channel of a color's error.
+fn error_channel(color: &str) -> String {
+    format!("error.{color}")
+}

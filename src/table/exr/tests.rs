@@ -70,7 +70,7 @@ fn dyed(table: &StructureTable) -> ScatterMaps {
         rgb: (0..bins * texels)
             .map(|i| at(i / texels, i % texels))
             .collect(),
-        error: table.error.clone(),
+        error: table.error.iter().map(|e| [*e, 0.5 * e, 2.0 * e]).collect(),
         absorption_per_um: [0.1, 1.0 / 3.0, 7e-5],
         radius_um: table.radius_um,
         ledger: (0..bins).map(|n| *table.ledger(n, 0)).collect(),

@@ -70,7 +70,7 @@ fn chiang(absorption: [f64; 3]) -> ScatterMaps {
         }
     }
     ScatterMaps {
-        error: vec![0.0; rgb.len()],
+        error: vec![[0.0; 3]; rgb.len()],
         ledger: vec![Ledger::default(); nodes.len()],
         nodes,
         res,

@@ -16,7 +16,6 @@ impl PackedTable {
         let cube = Unicube::new(res);
         let maps = self.maps(&cube)?;
         let texels = cube.texels();
-        let error = vec![0.0; self.nodes.len() * texels];
         let table = match &self.kind {
             Kind::Structure { levels } => TableFile::Structure(StructureTable {
                 nodes: self.nodes.clone(),
@@ -24,7 +23,7 @@ impl PackedTable {
                 levels: levels.clone(),
                 radius_um: self.radius_um,
                 flux: maps.concat(),
-                error,
+                error: vec![0.0; self.nodes.len() * texels],
                 ledger: self.ledger.clone(),
                 provenance: self.provenance.clone(),
             }),
@@ -34,7 +33,7 @@ impl PackedTable {
                 rgb: (0..self.nodes.len() * texels)
                     .map(|i| [0, 1, 2].map(|c| maps[i / texels * channels + c][i % texels]))
                     .collect(),
-                error,
+                error: vec![[0.0; 3]; self.nodes.len() * texels],
                 absorption_per_um: *absorption_per_um,
                 radius_um: self.radius_um,
                 ledger: self.ledger.clone(),

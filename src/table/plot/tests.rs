@@ -18,7 +18,7 @@ fn maps(res: usize) -> ScatterMaps {
         }
     }
     ScatterMaps {
-        error: vec![0.1; rgb.len()],
+        error: vec![[0.1; 3]; rgb.len()],
         ledger: vec![Ledger::default(); nodes.len()],
         nodes,
         res,
