@@ -167,6 +167,7 @@ impl Pieces {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fiber::convex;
 
     #[test]
     fn pieces_have_the_lengths_of_their_kind() {
@@ -193,6 +194,33 @@ mod tests {
                 assert!((pieces.share(z0, z1) - sum as f64 / f64::from(n)).abs() < 0.01);
             }
             assert!((share - expected).abs() < 0.04, "{share} {expected}");
+        }
+    }
+
+    /// Full in the middle, a point at the ends: isolated lenses, as micrographs have them.
+    #[test]
+    fn pieces_have_round_ends() {
+        let period = least_period_um(Continuity::Fragmentary);
+        let pieces = Pieces::new(Continuity::Fragmentary, period, 5).unwrap();
+        let semi = DVec2::new(12.0, 9.0);
+        let rods = pieces.rods(semi);
+        let holds = |p: DVec3| {
+            (rods.iter()).any(|rod| convex::holds(p - rod.center, &rod.planes, &rod.quadrics))
+        };
+        for &[z0, z1] in pieces.spans() {
+            let (middle, half) = (0.5 * (z0 + z1), 0.5 * (z1 - z0));
+            for along in [-0.99, -0.8, -0.5, 0.0, 0.5, 0.8, 0.99_f64] {
+                let radius = (1.25 * (1.0 - along * along).sqrt()).min(1.0);
+                for turn in 0..8 {
+                    let azimuth = f64::from(turn).to_radians() * 45.0;
+                    let at = |r: f64| {
+                        let across = r * semi * DVec2::from_angle(azimuth);
+                        holds(across.extend(middle + along * half))
+                    };
+                    assert!(at(0.98 * radius), "{along}");
+                    assert!(!at(1.02 * radius), "{along}");
+                }
+            }
         }
     }
 }
