@@ -84,6 +84,43 @@ fn a_clear_cylinder_returns_everything() {
 }
 
 #[test]
+fn a_photon_seed_changes_the_photons_and_not_the_fiber() {
+    let structure = vair::species::load("human", &[]).unwrap().classes[0].stations[0]
+        .structure
+        .clone();
+    let settings = |seed, photon_seed| Settings {
+        photons: 20_000,
+        face: 8,
+        bins: 4,
+        seed,
+        photon_seed,
+        ..Settings::cone()
+    };
+    let whole = |settings: &Settings| {
+        let bake = Bake::new(&structure, settings).unwrap();
+        bake.run(&Goal::default(), &Silent, &Cancel::default());
+        match bake.snapshot().unwrap() {
+            Undyed::Gray(table) => table.flux.clone(),
+            Undyed::Colored(_) => unreachable!("gray"),
+        }
+    };
+    let through = |fiber: u64, settings: &Settings| {
+        let fiber = Fiber::build(&structure, fiber).unwrap();
+        let (origin, cancel) = (Provenance::default(), Cancel::default());
+        bake(&fiber, settings, origin, &Silent, &cancel)
+            .unwrap()
+            .table
+            .flux
+    };
+    let other = whole(&settings(0, 1));
+    assert!(other == through(0, &settings(0, 1)));
+    assert!(other != through(1, &settings(0, 1)));
+    assert!(other != whole(&settings(0, 0)) && other != whole(&settings(1, 0)));
+    // Another fiber meets other photons: its noise is its own.
+    assert!(through(0, &settings(1, 0)) != whole(&settings(0, 0)));
+}
+
+#[test]
 fn same_bytes_for_any_number_of_threads() {
     let settings = Settings {
         photons: 100_000,

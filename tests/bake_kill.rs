@@ -202,6 +202,12 @@ fn a_foreign_checkpoint_is_refused_and_a_damaged_one_ignored() {
     ] {
         assert!(said.contains(word), "{said}");
     }
+    let output = desk
+        .command(&format!("{bake} --photon-seed 7"))
+        .output()
+        .unwrap();
+    let said = self::said(&output);
+    assert!(said.contains("settings.photon_seed is 0, not 7"), "{said}");
     assert!(std::fs::read(&checkpoint).unwrap() == kept);
     desk.run(&format!("{bake} --seed 7 --restart"));
     assert!(!checkpoint.exists());

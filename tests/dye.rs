@@ -46,11 +46,11 @@ fn fibers() -> Vec<(String, Structure)> {
     fibers
 }
 
-fn baked(fiber: &Fiber, settings: &Settings, seed: u64) -> StructureTable {
+fn baked(fiber: &Fiber, settings: &Settings, photon_seed: u64) -> StructureTable {
     let settings = Settings {
         bins: 8,
         face: 16,
-        seed,
+        photon_seed,
         ..settings.clone()
     };
     let baked = bake(
@@ -179,8 +179,8 @@ fn noise_over_errors(fork: bool) -> [[f64; 2]; 3] {
         ..Settings::cone()
     };
     let absorption = [0.5, 2.0, 8.0].map(|tau| tau / (0.5 * fiber.structure().diameter_um));
-    let pair = [1, 2].map(|seed| {
-        let table = baked(&fiber, &settings, seed);
+    let pair = [1, 2].map(|photon_seed| {
+        let table = baked(&fiber, &settings, photon_seed);
         (table.dye(absorption).unwrap(), table)
     });
     [0, 1, 2].map(|c| {

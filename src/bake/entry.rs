@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 /// The identity of a photon and the range of directions it comes from.
 #[derive(Clone, Copy, Debug)]
 pub struct Photon {
-    /// Seed of the bake.
+    /// Seed of the photons.
     pub seed: u64,
     /// Number of the photon; node in the high bits, index in the low 40.
     pub stream: u64,

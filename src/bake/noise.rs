@@ -130,10 +130,10 @@ mod tests {
         let structure = &species.classes[0].stations[0].structure;
         let fiber = Fiber::build(structure, 0).unwrap();
         for fold in [false, true] {
-            let bake = |seed| {
+            let bake = |photon_seed| {
                 let settings = Settings {
                     photons: 100_000,
-                    seed,
+                    photon_seed,
                     fold,
                     reconstruct: false,
                     ..Settings::cone()

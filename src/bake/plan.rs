@@ -138,6 +138,7 @@ impl Plan {
             ledger: Vec::new(),
             provenance: Provenance {
                 seed: self.settings.seed,
+                photon_seed: self.settings.photon_seed,
                 max_events: self.settings.max_events,
                 content: Recipe::content(recipe, photons),
                 program: concat!("vair ", env!("CARGO_PKG_VERSION")).to_owned(),

@@ -3,6 +3,7 @@
 use super::tally;
 use crate::blame::Blame;
 use crate::fiber::FiberError;
+use crate::sampling::hash64;
 use crate::table::Mode;
 
 /// How to bake.
@@ -19,8 +20,12 @@ pub struct Settings {
     /// Reflections, refractions and scatterings after which a photon is given up. The paper's 16
     /// loses up to half the light of pale fibers; at 1000 a closed clear fiber loses nothing.
     pub max_events: u32,
-    /// Seed of photons and geometry.
+    /// Seed of the fiber: which one of its kind it is. [`super::Bake::new`] builds it with that. Fibers of
+    /// different seeds meet different photons, too.
     pub seed: u64,
+    /// Seed of the photons: others fly other photons through the same fiber, so that two bakes differ
+    /// by noise alone.
+    pub photon_seed: u64,
     /// Optical depths per mean radius, ascending, the first 0, then a geometric series of ratio 2.
     pub levels: Vec<f64>,
     /// Average each map with its mirror image where the fiber allows it: half the variance.
@@ -45,6 +50,12 @@ impl Settings {
         }
     }
 
+    /// What the random numbers of the photons start from: the fiber's seed where the photons have none
+    /// of their own.
+    pub(super) fn seed_of_photons(&self) -> u64 {
+        self.seed ^ hash64(self.photon_seed) ^ hash64(0)
+    }
+
     /// As many photons as the sums of so many nodes can hold.
     pub fn most_photons(bins: usize) -> u64 {
         MOST_A_NODE * bins as u64
@@ -59,6 +70,7 @@ impl Settings {
             photons: 1_000_000_000,
             max_events: 1000,
             seed: 0,
+            photon_seed: 0,
             levels: absorption_levels(12),
             fold: true,
             fork: true,

@@ -32,7 +32,7 @@ impl Shot<'_> {
     fn fly_one(&self, index: u64, tally: &mut Tally) {
         let edges = &self.nodes.edges;
         let photon = Photon {
-            seed: self.settings.seed,
+            seed: self.settings.seed_of_photons(),
             stream: ((self.node as u64) << 40) | index,
             sin_range: (edges[self.node].sin(), edges[self.node + 1].sin()),
         };

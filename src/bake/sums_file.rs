@@ -20,7 +20,7 @@ use std::ops::Range;
 use std::path::Path;
 
 /// Raised when the layout or the meaning of an array changes.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Recipe and species text are some ten kilobytes; a species file may be four megabytes.
 const LONGEST_HEADER: u64 = 32 << 20;
 

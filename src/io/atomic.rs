@@ -1,6 +1,8 @@
 //! The only creator of output files. A file appears under its name complete, or not at all:
-//! sibling temporary, sync, rename.
+//! sibling temporary, sync, rename. Temporaries of writers that were killed go with the next file
+//! that is written beside them.
 
+use super::stale;
 use crate::blame::Blame;
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
@@ -53,11 +55,13 @@ impl AtomicFile {
             let reason = io::Error::new(io::ErrorKind::IsADirectory, "it is a folder");
             return Err(FileError::new("write", path, reason));
         }
+        stale::sweep(folder_of(path));
         let temp = tempfile::Builder::new()
-            .prefix(".vair-")
-            .suffix(".part")
+            .prefix(stale::PREFIX)
+            .suffix(stale::SUFFIX)
             .tempfile_in(folder_of(path))
             .map_err(|e| FileError::new("create", path, e))?;
+        stale::claim(temp.as_file());
         Ok(Self {
             path: path.to_owned(),
             file: BufWriter::with_capacity(1 << 20, temp),

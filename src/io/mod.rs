@@ -2,6 +2,7 @@
 
 mod atomic;
 mod exr;
+mod stale;
 
 pub use atomic::{AtomicFile, FileError, check_writable, read_bounded};
 pub use exr::sort_exr_attributes;

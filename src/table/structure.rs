@@ -38,8 +38,10 @@ pub struct Provenance {
     pub class: String,
     /// Position along the hair of the station, 0..1.
     pub station: f64,
-    /// Seed of the bake.
+    /// Seed of the fiber.
     pub seed: u64,
+    /// Seed of the photons.
+    pub photon_seed: u64,
     /// Events after which a photon was given up.
     pub max_events: u32,
     /// SHA-256 of structure, settings and format version, in hexadecimal: the name in the cache. Three of

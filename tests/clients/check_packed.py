@@ -1,7 +1,9 @@
-"""Checks a packed table against the one that it was made from: python check_packed.py PACKED.exr TABLE.exr
+"""Checks a packed table against the one that it was made from: python check_packed.py PACKED.exr TABLE.exr SAID.json
 
-Needs numpy and OpenEXR. Prints the relative L2 distance of S below 73 degrees; exit code 1 above 20 %.
+SAID is what `vair table pack --json` said. Needs numpy and OpenEXR. Prints the relative L2 distance of S
+below 73 degrees; exit code 1 if that is not what was said.
 """
+import json
 import sys
 
 import numpy as np
@@ -9,7 +11,7 @@ from read_packed import read_packed
 from read_table import directions, read, solid_angles
 
 
-def main(packed, plain):
+def main(packed, plain, said):
     head, flux = read_packed(packed)
     _, bins = read(plain)
     n = head["vair:face"]
@@ -26,9 +28,12 @@ def main(packed, plain):
             apart += node * (weight * (density[0] - density[1]) ** 2).sum()
             square += node * (weight * density[1] ** 2).sum()
     error = np.sqrt(apart / square)
-    print(f"{names[0]}: {100 * error:.2f} %")
-    return 0 if error < 0.2 else 1
+    with open(said) as file:
+        expected = json.load(file)["channels"][0]["against_input"]["error"]
+    agrees = abs(error - expected) < 1e-3
+    print("OK" if agrees else "FAIL", f"{packed}: {names[0]} {100 * error:.2f} %, said {100 * expected:.2f} %")
+    return 0 if agrees else 1
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:3]))
+    sys.exit(main(*sys.argv[1:4]))

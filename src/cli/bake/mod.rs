@@ -25,6 +25,7 @@ use values::{parse_bytes, parse_share, parse_time};
   vair bake polar-bear --target-error 2% --photons 1e9 -o bear.exr
   vair bake glass-cylinder --set structure.ior=1.55 --mode paper --photons 1e8 -o glass.exr
   vair bake my-cat.toml --class under --photons 1e7 -o cat-under.exr
+  vair bake human --photons 1e7 --photon-seed 1 -o human-again.exr
   vair bake human --photons 1e10 --shard 2/3 -o human-2.safetensors
 
 A bake ends at whichever comes first of --photons, --target-error and --time. Its table says how many
@@ -77,9 +78,13 @@ pub(super) struct Args {
     /// Leave the noise in the maps: plain means of the photons, as always in paper mode.
     #[arg(long)]
     raw: bool,
-    /// Seed of geometry and photons.
+    /// Seed of the fiber, as for `vair fiber`: another one is another hair of the same kind.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Seed of the photons: another one flies other photons through the same fiber, so that two
+    /// tables differ by noise alone.
+    #[arg(long, default_value_t = 0)]
+    photon_seed: u64,
     /// Threads; all cores if not given. The result does not depend on it.
     #[arg(long)]
     threads: Option<usize>,
@@ -151,6 +156,7 @@ fn settings(args: &Args) -> Settings {
         max_events: args.max_events.unwrap_or(base.max_events),
         reconstruct: base.reconstruct && !args.raw,
         seed: args.seed,
+        photon_seed: args.photon_seed,
         ..base
     }
 }

@@ -5,7 +5,8 @@ use crate::cli::stdout::{print, print_json};
 use crate::cli::{Console, Failure};
 use crate::io::check_writable;
 use crate::table::{
-    ChannelComparison, Comparison, Difference, DifferencePlot, THETA_MAX_DEG, TableFile, compare,
+    ChannelComparison, Comparison, Difference, DifferencePlot, Provenance, THETA_MAX_DEG,
+    TableFile, compare,
 };
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -56,6 +57,9 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     }
     let (a, b) = (TableFile::read(&args.a)?, TableFile::read(&args.b)?);
     let compared = compare(&a, &b, args.theta_max)?;
+    if let Some(why) = not_independent(a.provenance(), b.provenance()) {
+        console.say(format_args!("note: {why}"));
+    }
     if let Some(output) = &args.output {
         let name = |path: &PathBuf| {
             let name = path.file_name().unwrap_or_default();
@@ -79,6 +83,24 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     } else {
         print(&text(&compared))
     }
+}
+
+/// Why the distance of two tables of a fiber is not what the noise of both makes of it, if so.
+pub(super) fn not_independent(a: &Provenance, b: &Provenance) -> Option<&'static str> {
+    let fiber = |p: &Provenance| (p.species.clone(), p.class.clone(), p.station.to_bits());
+    if fiber(a) != fiber(b) || a.program.is_empty() {
+        return None;
+    }
+    if a.seed != b.seed {
+        return Some(
+            "the seeds of the fibers differ, so the tables differ by more than noise; \
+             --photon-seed flies other photons through the same fiber",
+        );
+    }
+    (a.photon_seed == b.photon_seed).then_some(
+        "both have the same photons as far as they go, so their noise is not independent; \
+         bake one with another --photon-seed",
+    )
 }
 
 fn json(compared: &Comparison) -> Value {

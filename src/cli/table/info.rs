@@ -128,6 +128,7 @@ impl<'a> Summary<'a> {
             "class": p.class,
             "station": p.station,
             "seed": p.seed,
+            "photon_seed": p.photon_seed,
             "max_events": p.max_events,
             "content": p.content,
             "program": p.program,
@@ -194,7 +195,12 @@ impl<'a> Summary<'a> {
         };
         line(
             "photons",
-            format!("{}{each}, seed {}", self.photons(), p.seed),
+            format!(
+                "{}{each}, seed {}, photon seed {}",
+                self.photons(),
+                p.seed,
+                p.photon_seed
+            ),
         );
         line("max events", p.max_events.to_string());
         line("content", p.content.clone());

@@ -1,6 +1,6 @@
 //! `vair table pack`: a table in little space, and what that costs.
 
-use super::compare::{difference_json, percent};
+use super::compare::{difference_json, not_independent, percent};
 use crate::blame::Blame;
 use crate::cli::stdout::{print, print_json};
 use crate::cli::{Console, Failure};
@@ -17,12 +17,12 @@ use std::path::PathBuf;
 #[command(after_help = "Examples:\n  \
     vair table pack fox.exr -o fox-half.exr --half\n  \
     vair table pack fox-dyed.exr -o fox-small.exr --budget 200KB\n  \
-    vair table pack fox-dyed.exr -o fox-tiny.exr --budget 20KB --against other-seed.exr\n  \
+    vair table pack fox-dyed.exr -o fox-tiny.exr --budget 20KB --against other-photons.exr\n  \
     vair table pack fox.exr -o fox-rank8.exr --rank 8\n\n\
     Every command that reads tables reads packed ones. Errors are relative L2 distances of the\n\
     scattering function over inclinations below 73 degrees, as `vair table compare` tells them. The\n\
     error against the input counts its noise that packing took out; a second bake of the same fiber\n\
-    with another seed (--against) tells the error against the truth, before packing and after.\n\
+    with another --photon-seed (--against) tells the error against the truth, before packing and after.\n\
     Best pack the structure table: it serves every pigment and its levels cost little.")]
 pub(super) struct Args {
     /// The table to pack.
@@ -69,6 +69,11 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     check_writable(&args.output)?;
     let table = TableFile::read(&args.file)?;
     let other = args.against.as_deref().map(TableFile::read).transpose()?;
+    if let (Some(other), Some(path)) = (&other, &args.against)
+        && let Some(why) = not_independent(table.provenance(), other.provenance())
+    {
+        console.say(format_args!("warning: {}: {why}", path.display()));
+    }
     let packing = Packing {
         rank: args.rank,
         bytes: args.budget,

@@ -188,6 +188,7 @@ pub(super) fn provenance(head: &Attributes) -> Result<Provenance, TableError> {
         class: head.get_text("class")?.to_owned(),
         station: head.get_double("station")?,
         seed: head.get_parsed("seed")?,
+        photon_seed: head.get_parsed("photon_seed")?,
         max_events: head.get_parsed("max_events")?,
         content: head.get_text("content")?.to_owned(),
         species_text: head.get_text("species_text")?.to_owned(),

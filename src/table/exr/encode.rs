@@ -109,6 +109,7 @@ pub(super) fn put_provenance(head: &mut Attributes, provenance: &Provenance) {
     head.text("class", &provenance.class);
     head.double("station", provenance.station);
     head.text("seed", provenance.seed.to_string());
+    head.text("photon_seed", provenance.photon_seed.to_string());
     head.text("max_events", provenance.max_events.to_string());
     head.text("content", &provenance.content);
     head.text("species_text", &provenance.species_text);

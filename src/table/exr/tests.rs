@@ -32,6 +32,7 @@ fn sample(mode: Mode, bins: usize, res: usize) -> StructureTable {
             class: String::new(),
             station: 0.7,
             seed: u64::MAX,
+            photon_seed: 1 << 63,
             max_events: u32::MAX,
             content: "00ff".into(),
             species_text: "name = \"Füchslein 狐\"\n# two\nlines".into(),
