@@ -58,7 +58,7 @@ fn shift(flights: &[Flight], keep: impl Fn(&Flight, f64) -> bool) -> (f64, f64) 
         .filter_map(|f| match f.end {
             End::Escaped(w) => {
                 let phi = w.y.atan2(w.x).to_degrees().abs();
-                let shift = (frame::theta_of(w) + f.theta).to_degrees();
+                let shift = (frame::theta_of(w) + f.theta()).to_degrees();
                 (keep(f, phi) && shift.abs() < 40.0).then_some(shift)
             }
             _ => None,
@@ -128,8 +128,8 @@ fn explicit_geometry_is_reciprocal() {
                 continue;
             };
             let phi = ((w.y.atan2(w.x).abs() / std::f64::consts::PI * 4.0) as usize).min(3);
-            let cell = (bin(flight.theta) * N + bin(frame::theta_of(w))) * 4 + phi;
-            let weight = flight.theta.cos();
+            let cell = (bin(flight.theta()) * N + bin(frame::theta_of(w))) * 4 + phi;
+            let weight = flight.theta().cos();
             sum[cell].0 += weight;
             sum[cell].1 += weight * weight;
         }

@@ -76,7 +76,7 @@ impl Cells {
                 let End::Escaped(w) = flight.end else {
                     continue;
                 };
-                let (sin, cos) = (flight.theta - center).sin_cos();
+                let (sin, cos) = (flight.theta() - center).sin_cos();
                 let w = frame::shift_inclination(w, sin, cos);
                 let j = ((frame::theta_of(w) - theta_edge(0)) / PI * THETAS as f64) as usize;
                 let k = (w.y.atan2(w.x).abs() / PI * PHIS as f64) as usize;

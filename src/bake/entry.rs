@@ -6,7 +6,7 @@ use super::photon::follow_from;
 use super::{End, Flight, follow};
 use crate::fiber::{Fiber, Hit, Optics, Region};
 use crate::math::turn::unit_vector;
-use crate::sampling::Rng;
+use crate::sampling::{Rng, hash64};
 use crate::table::PHOTON;
 use glam::{DVec2, DVec3};
 
@@ -82,8 +82,8 @@ pub fn fly_forked(
 
 /// Where a photon meets the fiber.
 struct Entry {
-    /// Inclination of the query direction, radians.
-    theta: f64,
+    /// Cosine and sine of the inclination of the query direction.
+    query: DVec2,
     /// Direction of travel.
     dir: DVec3,
     /// Cosine and sine of the fiber's rotation.
@@ -115,7 +115,7 @@ impl Entry {
             h = 2.0 * rng.uniform() - 1.0;
         }
         Self {
-            theta: sin.atan2(cos),
+            query: DVec2::new(cos, sin),
             dir,
             turn,
             met,
@@ -124,7 +124,7 @@ impl Entry {
 
     fn missed(&self) -> Flight {
         Flight {
-            theta: self.theta,
+            query: self.query,
             path_um: 0.0,
             share: 1.0,
             events: 0,
@@ -136,7 +136,7 @@ impl Entry {
     fn seen(&self, way: Flight) -> Flight {
         let back = DVec2::new(self.turn.x, -self.turn.y);
         Flight {
-            theta: self.theta,
+            query: self.query,
             end: match way.end {
                 End::Escaped(dir) => End::Escaped(rotate(dir, back)),
                 other => other,
@@ -152,22 +152,41 @@ fn rotate(v: DVec3, turn: DVec2) -> DVec3 {
     DVec3::new(xy.x, xy.y, v.z)
 }
 
-/// Inclination and offset across the fiber as a rank-1 sequence with a random shift: evenly spread
-/// at any count, a function of the index alone. (Steps: powers of the plastic number, Roberts 2018.)
 fn stratified(photon: &Photon) -> (f64, f64) {
-    const STEP: [u64; 2] = [0xc13f_a9a9_02a6_328f, 0x91e1_0da5_c79e_7b1d];
-    const NODE_BITS: u32 = 40;
     let node = photon.stream >> NODE_BITS;
     let index = photon.stream & ((1 << NODE_BITS) - 1);
-    let shift = crate::sampling::hash64(photon.seed ^ crate::sampling::hash64(node + 1));
-    let point = |step: u64, shift: u64| {
-        let bits = index.wrapping_mul(step).wrapping_add(shift);
-        (bits >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
-    };
-    (
-        point(STEP[0], shift),
-        point(STEP[1], crate::sampling::hash64(shift)),
-    )
+    Stratified::new(photon.seed, node).at(index)
+}
+
+/// Bits of a photon's stream below its node.
+pub(super) const NODE_BITS: u32 = 40;
+
+/// Inclination and offset across the fiber of a node's photons as a rank-1 sequence with a random
+/// shift: evenly spread at any count, a function of the index alone. (Steps: powers of the plastic
+/// number, Roberts 2018.)
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stratified {
+    shift: [u64; 2],
+}
+
+impl Stratified {
+    pub(super) fn new(seed: u64, node: u64) -> Self {
+        let shift = hash64(seed ^ hash64(node + 1));
+        Self {
+            shift: [shift, hash64(shift)],
+        }
+    }
+
+    /// The numbers of a photon, each in `[0, 1)`.
+    #[inline]
+    pub(super) fn at(&self, index: u64) -> (f64, f64) {
+        const STEP: [u64; 2] = [0xc13f_a9a9_02a6_328f, 0x91e1_0da5_c79e_7b1d];
+        let point = |k: usize| {
+            let bits = index.wrapping_mul(STEP[k]).wrapping_add(self.shift[k]);
+            (bits >> 11) as i64 as f64 * (1.0 / (1u64 << 53) as f64)
+        };
+        (point(0), point(1))
+    }
 }
 
 #[cfg(test)]

@@ -10,7 +10,8 @@ pub struct Goal {
     /// The error is looked at after counts of photons that depend on nothing but the sums, so the same
     /// goal is met by the same photons on any machine.
     pub error: Option<f64>,
-    /// A moment to be done by. What is done by then does depend on the machine.
+    /// A moment to have a table by: time for [`super::Bake::snapshot`] is kept free. What is done by then
+    /// does depend on the machine.
     pub until: Option<Instant>,
 }
 

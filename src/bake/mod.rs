@@ -9,6 +9,7 @@ mod boundary;
 mod cache;
 mod checkpoint;
 mod content;
+mod cylinder;
 mod difference;
 mod entry;
 mod find;
@@ -29,6 +30,7 @@ mod shot;
 mod sums;
 mod sums_file;
 mod tally;
+mod touched;
 
 pub use cache::{Cache, CacheSize};
 pub use checkpoint::{Checkpoint, Found, drive};

@@ -5,7 +5,7 @@ use super::microfacet::{self, Turn};
 use crate::fiber::{Fiber, Hit, Medium, Optics, Region};
 use crate::math::turn::unit_vector;
 use crate::sampling::Rng;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// How a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,8 +25,8 @@ pub enum End {
 /// A photon's flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flight {
-    /// Inclination of the query direction, radians.
-    pub theta: f64,
+    /// Cosine and sine of the inclination of the query direction.
+    pub query: DVec2,
     /// Length of path through pigment, weighted by its density, micrometers.
     pub path_um: f64,
     /// Share of the light that opaque boundaries and absorbing media have left, pigment aside: 1 in
@@ -38,10 +38,17 @@ pub struct Flight {
     pub end: End,
 }
 
+impl Flight {
+    /// Inclination of the query direction, radians.
+    pub fn theta(&self) -> f64 {
+        self.query.y.atan2(self.query.x)
+    }
+}
+
 /// Follows a photon that comes from outside and has just met the fiber, by chance, until it leaves.
 ///
 /// * `p`, `dir`, `hit`: where it meets the fiber, its unit direction, and what it meets there.
-/// * The directions of the result are in the fiber's frame; `theta` is that of the light's source.
+/// * The directions of the result are in the fiber's frame; `query` is that of the light's source.
 #[inline]
 pub fn follow(
     fiber: &Fiber,
@@ -66,7 +73,7 @@ pub(super) fn follow_from(
     max_events: u32,
 ) -> Flight {
     let mut flight = Flight {
-        theta: -dir.z.clamp(-1.0, 1.0).asin(),
+        query: DVec2::new((1.0 - dir.z * dir.z).max(0.0).sqrt(), -dir.z),
         path_um: 0.0,
         share: 1.0,
         events: 0,

@@ -6,7 +6,7 @@ use super::tally::Tally;
 use super::{BakeError, Settings};
 use crate::fiber::Fiber;
 use crate::math::unicube::Unicube;
-use crate::table::{Nodes, Provenance, StructureTable, Undyed};
+use crate::table::{Ledger, Nodes, Provenance, StructureTable, Undyed};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -79,11 +79,14 @@ impl Plan {
 
     /// The tables of `photons` photons that are summed up in `tallies`.
     ///
+    /// * `filter`: that of this plan.
+    ///
     /// # Errors
     /// [`BakeError::Stopped`] if a node has no photon yet.
     pub(super) fn tables(
         &self,
         tallies: &[Tally],
+        filter: Option<&Reconstruction>,
         photons: u64,
         provenance: &Provenance,
     ) -> Result<Undyed, BakeError> {
@@ -94,7 +97,7 @@ impl Plan {
             .recipes
             .iter()
             .zip(tallies.chunks(self.settings.bins))
-            .map(|(recipe, tallies)| self.table(recipe, tallies, photons, provenance));
+            .map(|(recipe, tallies)| self.table(recipe, tallies, filter, photons, provenance));
         match (tables.next(), tables.next(), tables.next()) {
             (Some(red), Some(green), Some(blue)) => {
                 Ok(Undyed::Colored(Box::new([red, green, blue])))
@@ -104,37 +107,45 @@ impl Plan {
         }
     }
 
+    /// Fluxes, errors and the books of one node.
+    pub(super) fn maps(
+        &self,
+        tally: &Tally,
+        filter: Option<&Reconstruction>,
+    ) -> (Vec<f32>, Vec<f32>, Vec<Ledger>) {
+        if let Some(filter) = filter {
+            let maps = filter.maps(tally);
+            return (maps.flux, maps.error, tally.ledger());
+        }
+        // One map at a time and thread is copied, to be folded.
+        let mut tally = tally.clone();
+        if self.folded {
+            tally.fold(&Unicube::new(self.settings.face));
+        }
+        (tally.flux(), tally.error(), tally.ledger())
+    }
+
     fn table(
         &self,
         recipe: &str,
         tallies: &[Tally],
+        filter: Option<&Reconstruction>,
         photons: u64,
         provenance: &Provenance,
     ) -> StructureTable {
-        let cube = Unicube::new(self.settings.face);
-        let filter = self.filter(&cube);
-        // One map at a time and thread is copied, to be folded.
         let maps: Vec<_> = tallies
             .par_iter()
-            .map(|tally| {
-                if let Some(filter) = &filter {
-                    let maps = filter.maps(tally);
-                    return (maps.flux, maps.error, tally.ledger());
-                }
-                let mut tally = tally.clone();
-                if self.folded {
-                    tally.fold(&cube);
-                }
-                (tally.flux(), tally.error(), tally.ledger())
-            })
+            .with_max_len(1)
+            .map(|tally| self.maps(tally, filter))
             .collect();
+        let texels = 6 * self.settings.face * self.settings.face * tallies.len();
         let mut table = StructureTable {
             nodes: self.nodes(),
             res: self.settings.face,
             levels: self.settings.levels.clone(),
             radius_um: self.radius_um,
-            flux: Vec::new(),
-            error: Vec::new(),
+            flux: Vec::with_capacity(texels * self.settings.levels.len()),
+            error: Vec::with_capacity(texels),
             ledger: Vec::new(),
             provenance: Provenance {
                 seed: self.settings.seed,

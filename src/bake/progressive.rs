@@ -15,7 +15,10 @@ use crate::progress::{Cancel, Progress};
 use crate::species::Structure;
 use crate::table::{Nodes, Provenance, Undyed};
 use std::ops::Range;
-use std::sync::{Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::sync::{
+    Mutex, MutexGuard, OnceLock, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard,
+};
+use std::time::{Duration, Instant};
 
 /// A photon bake of one fiber, or of three alike where its materials differ by color.
 ///
@@ -58,7 +61,8 @@ pub(super) struct Done {
     pub(super) span: Range<u64>,
     /// By channel and node.
     pub(super) tallies: Vec<Tally>,
-    pub(super) error: f64,
+    /// Estimated when it is asked for: that takes as long as filtering a table does.
+    pub(super) error: OnceLock<f64>,
 }
 
 /// What only the driving thread uses.
@@ -69,6 +73,12 @@ pub(super) struct Hand {
     pub(super) pace: Option<f64>,
     /// Photons of the last pass.
     pub(super) last: u64,
+    /// Seconds that adding it to the sums took.
+    pub(super) adding: f64,
+    /// What [`Bake::snapshot`] will take.
+    pub(super) snapshot: Duration,
+    /// When the error was reported last, and how long estimating it took.
+    pub(super) reported: Option<(Instant, Duration)>,
     /// Where the error is held against the goal next.
     pub(super) check: u64,
 }
@@ -109,20 +119,24 @@ impl<'a> Bake<'a> {
         let plan = Plan::new(&lent, settings);
         let cube = Unicube::new(settings.face);
         let tallies = || (0..plan.units()).map(|_| plan.empty_tally());
+        let (norm, filter) = rayon::join(|| Norm::new(&cube, plan.folded), || plan.filter(&cube));
         Ok(Self {
             nodes: plan.nodes(),
-            norm: Norm::new(&cube, plan.folded),
-            filter: plan.filter(&cube),
+            norm,
+            filter,
             workers: None,
             done: RwLock::new(Done {
                 span: 0..0,
                 tallies: tallies().collect(),
-                error: f64::INFINITY,
+                error: OnceLock::new(),
             }),
             hand: Mutex::new(Hand {
                 fresh: tallies().map(Mutex::new).collect(),
                 pace: None,
                 last: 0,
+                adding: 0.0,
+                snapshot: Duration::ZERO,
+                reported: None,
                 check: first_check(settings.bins),
             }),
             header: Header::new(recipe, plan),
@@ -182,9 +196,16 @@ impl<'a> Bake<'a> {
 
     /// Relative L2 error of S at the clear level, over all queries and exits within 73 degrees of
     /// the normal plane, estimated from the counts; infinite as long as noise hides everything. Of
-    /// three channels the worst.
+    /// three channels the worst. Estimated when it is first asked for after a pass, which takes about as
+    /// long as [`Bake::snapshot`].
     pub fn error(&self) -> f64 {
-        self.done().error
+        let done = self.done();
+        if let Some(error) = done.error.get() {
+            return *error;
+        }
+        let error = self.estimate(&done.tallies);
+        // Another thread may have been faster, with the same result.
+        *done.error.get_or_init(|| error)
     }
 
     /// The table of what is done so far. Its content hash is that of a bake of so many photons.
@@ -197,7 +218,7 @@ impl<'a> Bake<'a> {
         let Header {
             plan, provenance, ..
         } = &self.header;
-        plan.tables(&done.tallies, photons, provenance)
+        plan.tables(&done.tallies, self.filter.as_ref(), photons, provenance)
     }
 
     /// Runs until the photons of the settings are flown, the goal is met or it is cancelled.
@@ -238,7 +259,7 @@ impl std::fmt::Debug for Bake<'_> {
         f.debug_struct("Bake")
             .field("settings", &self.header.plan.settings)
             .field("span", &done.span)
-            .field("error", &done.error)
+            .field("error", &done.error.get())
             .finish_non_exhaustive()
     }
 }

@@ -9,12 +9,16 @@ use super::tally::Tally;
 use crate::progress::{Cancel, Progress};
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::PoisonError;
-use std::time::Instant;
+use std::sync::{OnceLock, PoisonError};
+use std::time::{Duration, Instant};
 
-/// Seconds that a pass aims for. Adding one to the sums takes some ten milliseconds: shorter and that
-/// is felt, longer and a cancelled pass throws away more.
+/// Seconds that a pass aims for: longer, and a cancelled one throws away more.
 const PASS_SECONDS: f64 = 1.0;
+/// But it is to take so many times as long as what follows it: adding it to the sums, and estimating the
+/// error, or these would be felt.
+const AMORTIZED: f64 = 20.0;
+/// Passes shorter than this have no error reported, seconds.
+const REPORTED: f64 = 0.5;
 /// Photons a node of the first pass: enough for a rough table, a few hundredths of a second.
 const FIRST_PASS: u64 = 1024;
 /// A pass may be so many times as long as the one before, whose speed it is planned with.
@@ -27,10 +31,11 @@ impl Bake<'_> {
     /// On the threads of the rayon pool it is called from.
     pub fn refine(&self, goal: &Goal, progress: &dyn Progress, cancel: &Cancel) -> Option<Ended> {
         let mut hand = lock(&self.hand);
-        let (end, error) = (self.done().span.end, self.error());
+        let end = self.done().span.end;
         if let Some(goal) = goal.error
             && end >= hand.check
         {
+            let error = self.error();
             if error <= goal {
                 return Some(Ended::Error);
             }
@@ -51,15 +56,50 @@ impl Bake<'_> {
             });
             return Some(Ended::Cancelled);
         }
-        let error = self.add(&span, &mut hand);
-        hand.pace = Some(count as f64 / start.elapsed().as_secs_f64().max(1e-9));
+        let adding = Instant::now();
+        self.add(&span, &mut hand);
+        hand.adding = adding.elapsed().as_secs_f64();
+        let seconds = start.elapsed().as_secs_f64().max(1e-9);
+        if goal.until.is_some() && hand.pace.is_none() {
+            hand.snapshot = self.forecast_snapshot();
+        }
+        hand.pace = Some(count as f64 / seconds);
         hand.last = count;
+        self.report(&mut hand, seconds, goal, progress);
+        None
+    }
+
+    /// Tells how large the error is and where the bake will end, if a pass was long enough for that.
+    fn report(&self, hand: &mut Hand, seconds: f64, goal: &Goal, progress: &dyn Progress) {
+        let due = match hand.reported {
+            None => seconds >= REPORTED,
+            Some((last, took)) => last.elapsed() >= took.mul_f64(AMORTIZED),
+        };
+        if !due {
+            return;
+        }
+        let start = Instant::now();
+        let error = self.error();
+        hand.reported = Some((Instant::now(), start.elapsed()));
         progress.note(&format!("error {:.2} %", 100.0 * error));
-        if let Some(photons) = self.forecast(&hand, span.end, error, goal) {
+        let end = self.done().span.end;
+        if let Some(photons) = self.forecast(hand, end, error, goal) {
             let channels = self.fibers.len() as u64;
             progress.expect((photons - self.range.start) * channels);
         }
-        None
+    }
+
+    /// What a snapshot will take: what one node does, times their number, a little more for the rest.
+    fn forecast_snapshot(&self) -> Duration {
+        const REST: f64 = 1.2;
+        let done = self.done();
+        let Some(middle) = done.tallies.get(self.nodes.len() / 2) else {
+            return Duration::ZERO;
+        };
+        let start = Instant::now();
+        std::hint::black_box(self.header.plan.maps(middle, self.filter.as_ref()));
+        let rounds = done.tallies.len().div_ceil(rayon::current_num_threads());
+        start.elapsed().mul_f64(REST * rounds as f64)
     }
 
     /// Where the bake will end if a goal comes before its last photon.
@@ -79,7 +119,16 @@ impl Bake<'_> {
     /// Takes over the sums of a span.
     pub(super) fn take_over(&self, span: Range<u64>, tallies: Vec<Tally>, check: u64) {
         let mut hand = lock(&self.hand);
-        let mut done = self.done_mut();
+        *self.done_mut() = Done {
+            span,
+            tallies,
+            error: OnceLock::new(),
+        };
+        hand.check = check;
+    }
+
+    /// The error of sums.
+    pub(super) fn estimate(&self, tallies: &[Tally]) -> f64 {
         let noise: Vec<Noise> = tallies
             .par_iter()
             .enumerate()
@@ -89,12 +138,7 @@ impl Bake<'_> {
                 self.norm.of(&self.cube, &self.nodes, node, tally, filter)
             })
             .collect();
-        *done = Done {
-            span,
-            tallies,
-            error: Noise::of_channels(&noise, self.nodes.len()),
-        };
-        hand.check = check;
+        Noise::of_channels(&noise, self.nodes.len())
     }
 
     /// How many photons the next pass flies, or why there is none.
@@ -107,9 +151,10 @@ impl Bake<'_> {
         let mut count = match hand.pace {
             None => FIRST_PASS * nodes,
             Some(pace) => {
-                let mut seconds = PASS_SECONDS;
+                let mut seconds = PASS_SECONDS.max(AMORTIZED * hand.adding);
                 if let Some(until) = goal.until {
-                    let remaining = until.saturating_duration_since(Instant::now());
+                    let now = Instant::now() + hand.snapshot;
+                    let remaining = until.saturating_duration_since(now);
                     seconds = seconds.min(remaining.as_secs_f64());
                 }
                 let count = (pace * seconds).min(hand.last as f64 * GROWTH) as u64;
@@ -135,13 +180,8 @@ impl Bake<'_> {
     ) -> bool {
         let shots = self.fibers.iter().flat_map(|fiber| {
             (0..self.nodes.len()).map(move |node| {
-                let shot = Shot {
-                    fiber: fiber.get(),
-                    settings: &self.header.plan.settings,
-                    nodes: &self.nodes,
-                    cube: &self.cube,
-                    node,
-                };
+                let settings = &self.header.plan.settings;
+                let shot = Shot::new(fiber.get(), settings, &self.nodes, &self.cube, node);
                 (shot, of_node(span, self.nodes.len(), node))
             })
         });
@@ -150,25 +190,20 @@ impl Bake<'_> {
         pass::fly(shots.collect(), &hand.fresh, workers, progress, cancel)
     }
 
-    /// Adds the pass to the sums and says how noisy they are now.
-    fn add(&self, span: &Range<u64>, hand: &mut Hand) -> f64 {
+    /// Adds the pass to the sums.
+    fn add(&self, span: &Range<u64>, hand: &mut Hand) {
         let mut done = self.done_mut();
-        let noise: Vec<Noise> = done
-            .tallies
-            .par_iter_mut()
-            .zip(&mut hand.fresh)
-            .enumerate()
-            .map(|(unit, (sum, fresh))| {
-                let fresh = fresh.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let sums = done.tallies.par_iter_mut().zip(&mut hand.fresh);
+        sums.for_each(|(sum, fresh)| {
+            let fresh = fresh.get_mut().unwrap_or_else(PoisonError::into_inner);
+            if sum.is_empty() {
+                std::mem::swap(sum, fresh);
+            } else {
                 sum.add(fresh);
                 fresh.clear();
-                let node = unit % self.nodes.len();
-                let filter = self.filter.as_ref();
-                self.norm.of(&self.cube, &self.nodes, node, sum, filter)
-            })
-            .collect();
+            }
+        });
         done.span.end = span.end;
-        done.error = Noise::of_channels(&noise, self.nodes.len());
-        done.error
+        done.error = OnceLock::new();
     }
 }

@@ -1,22 +1,52 @@
 //! The photons of one node, flown and tallied.
 
-use super::tally::{Rest, Tally};
+use super::cylinder::{Chance, Cylinder};
+use super::entry::{NODE_BITS, Stratified};
+use super::tally::{Deposit, Deposits, Rest, Tally};
 use super::{End, Flight, Photon, Settings, fly, fly_forked};
 use crate::fiber::Fiber;
+use crate::math::frame::shift_inclination;
 use crate::math::unicube::Unicube;
 use crate::table::{Mode, Nodes, PHOTON};
+use glam::{DVec2, DVec3};
 use std::ops::Range;
+
+/// Photons whose deposits are collected before they are added to the sums: enough for the processor to
+/// fetch many sums at once, few enough to stay in its nearest cache.
+const COLLECTED: u64 = 256;
 
 /// The photons of one node.
 pub(super) struct Shot<'a> {
-    pub(super) fiber: &'a Fiber,
-    pub(super) settings: &'a Settings,
-    pub(super) nodes: &'a Nodes,
-    pub(super) cube: &'a Unicube,
-    pub(super) node: usize,
+    fiber: &'a Fiber,
+    settings: &'a Settings,
+    cube: &'a Unicube,
+    node: usize,
+    sin_range: (f64, f64),
+    /// Cosine and sine of the node's inclination.
+    center: DVec2,
+    /// The fiber if it is a bare cylinder.
+    cylinder: Option<Cylinder>,
 }
 
-impl Shot<'_> {
+impl<'a> Shot<'a> {
+    pub(super) fn new(
+        fiber: &'a Fiber,
+        settings: &'a Settings,
+        nodes: &Nodes,
+        cube: &'a Unicube,
+        node: usize,
+    ) -> Self {
+        Self {
+            fiber,
+            settings,
+            cube,
+            node,
+            sin_range: (nodes.edges[node].sin(), nodes.edges[node + 1].sin()),
+            center: DVec2::from_angle(nodes.centers[node]),
+            cylinder: Cylinder::of(fiber, settings),
+        }
+    }
+
     /// A tally for this node's photons.
     pub(super) fn empty_tally(&self) -> Tally {
         Tally::new(self.cube.texels(), self.settings.levels.len())
@@ -24,32 +54,86 @@ impl Shot<'_> {
 
     /// Flies a range of photon indices.
     pub(super) fn fly(&self, range: Range<u64>, tally: &mut Tally) {
-        for index in range {
-            self.fly_one(index, tally);
+        tally.emit(range.end - range.start);
+        let mut deposits = Deposits::default();
+        let mut start = range.start;
+        while start < range.end {
+            let end = range.end.min(start + COLLECTED);
+            match &self.cylinder {
+                Some(cylinder) => self.cross(cylinder, start..end, &mut deposits, tally),
+                None => (start..end).for_each(|i| self.follow(i, &mut deposits, tally)),
+            }
+            tally.escape(&mut deposits, &self.settings.levels);
+            start = end;
         }
     }
 
-    fn fly_one(&self, index: u64, tally: &mut Tally) {
-        let edges = &self.nodes.edges;
+    /// Flies photons through a bare cylinder.
+    fn cross(
+        &self,
+        cylinder: &Cylinder,
+        range: Range<u64>,
+        deposits: &mut Deposits,
+        tally: &mut Tally,
+    ) {
+        let (seed, node) = (self.settings.seed_of_photons(), self.node as u64);
+        let (start, chance) = (Stratified::new(seed, node), Chance::new(seed, node));
+        let (lo, hi) = self.sin_range;
+        for index in range {
+            let (along, across) = start.at(index);
+            let sin = lo + (hi - lo) * along;
+            let ways = cylinder.ways(sin, 2.0 * across - 1.0, chance.at(index));
+            // All light leaves along the specular cone, which the frame of a cone table holds still.
+            let cone = match self.settings.mode {
+                Mode::Paper => DVec2::new((1.0 - sin * sin).max(0.0).sqrt(), sin),
+                Mode::Cone => self.center,
+            };
+            let texel = |azimuth: DVec2| {
+                let w = DVec3::new(cone.x * azimuth.x, cone.x * azimuth.y, -cone.y);
+                self.cube.texel(w) as u32
+            };
+            let rest = |part, path| Rest {
+                part,
+                share: 1.0,
+                path,
+            };
+            if ways.part > 0 {
+                deposits.bare.push(Deposit {
+                    texel: texel(ways.reflected),
+                    rest: rest(ways.part, 0.0),
+                });
+            }
+            let rest = rest(PHOTON - ways.part, ways.path);
+            match ways.transmitted {
+                _ if rest.part == 0 => {}
+                Some(azimuth) => deposits.colored.push(Deposit {
+                    texel: texel(azimuth),
+                    rest,
+                }),
+                None => tally.truncate(rest, &self.settings.levels),
+            }
+        }
+    }
+
+    fn follow(&self, index: u64, deposits: &mut Deposits, tally: &mut Tally) {
         let photon = Photon {
             seed: self.settings.seed_of_photons(),
-            stream: ((self.node as u64) << 40) | index,
-            sin_range: (edges[self.node].sin(), edges[self.node + 1].sin()),
+            stream: ((self.node as u64) << NODE_BITS) | index,
+            sin_range: self.sin_range,
         };
-        tally.emit();
         let max_events = self.settings.max_events;
         if self.settings.fork {
             fly_forked(self.fiber, &photon, max_events, |part, flight| {
-                self.book(part, &flight, tally);
+                self.book(part, &flight, deposits, tally);
             });
         } else {
             let flight = fly(self.fiber, &photon, max_events);
-            self.book(PHOTON, &flight, tally);
+            self.book(PHOTON, &flight, deposits, tally);
         }
     }
 
     /// Books where a part of a photon went.
-    fn book(&self, part: u64, flight: &Flight, tally: &mut Tally) {
+    fn book(&self, part: u64, flight: &Flight, deposits: &mut Deposits, tally: &mut Tally) {
         let levels = &self.settings.levels;
         let rest = Rest {
             part,
@@ -61,11 +145,12 @@ impl Shot<'_> {
                 let w = match self.settings.mode {
                     Mode::Paper => w,
                     Mode::Cone => {
-                        let (sin, cos) = (flight.theta - self.nodes.centers[self.node]).sin_cos();
-                        crate::math::frame::shift_inclination(w, sin, cos)
+                        // By how much the query is beyond the node.
+                        let shift = DVec2::new(self.center.x, -self.center.y).rotate(flight.query);
+                        shift_inclination(w, shift.y, shift.x)
                     }
                 };
-                tally.escape(self.cube.texel(w), rest, levels);
+                deposits.push(self.cube.texel(w), rest);
             }
             End::Absorbed => tally.absorb(rest, levels),
             End::Truncated => tally.truncate(rest, levels),

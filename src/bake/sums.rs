@@ -6,6 +6,7 @@ use super::tally::Tally;
 use super::{BakeError, Shard};
 use crate::blame::Blame;
 use crate::io::FileError;
+use crate::math::unicube::Unicube;
 use crate::table::Undyed;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -172,11 +173,11 @@ impl Sums {
                 photons,
             });
         }
-        let provenance = &self.header.provenance;
-        Ok(self
-            .header
-            .plan
-            .tables(&self.tallies, photons, provenance)?)
+        let Header {
+            plan, provenance, ..
+        } = &self.header;
+        let filter = plan.filter(&Unicube::new(plan.settings.face));
+        Ok(plan.tables(&self.tallies, filter.as_ref(), photons, provenance)?)
     }
 
     /// Absorption per micrometer of R, G and B that the tables are to be dyed with; `None` if one

@@ -1,10 +1,16 @@
 //! Integer sums of one node: order-free and exact.
 
+use super::touched::Touched;
+use crate::math::decay::decay;
 use crate::math::unicube::Unicube;
 use crate::table::{Ledger, PHOTON};
+use wide::{f64x2, u64x2};
 
 /// Most absorption levels a tally holds.
 pub(super) const MAX_LEVELS: usize = 24;
+
+/// Exponentials that are computed side by side.
+const SIDE_BY_SIDE: usize = 64;
 
 /// A part of a photon at the end of its way.
 #[derive(Clone, Copy, Debug)]
@@ -15,6 +21,37 @@ pub(super) struct Rest {
     pub(super) share: f64,
     /// Its way through pigment in radii.
     pub(super) path: f64,
+}
+
+/// A part of a photon that has left.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Deposit {
+    /// Where.
+    pub(super) texel: u32,
+    /// What is left of it.
+    pub(super) rest: Rest,
+}
+
+/// Parts of photons that have left and are to be added to the sums. Many at a time: the sums do not
+/// fit into the nearest cache, and the processor fetches those of the next parts while it adds one.
+#[derive(Debug, Default)]
+pub(super) struct Deposits {
+    /// What met no pigment.
+    pub(super) bare: Vec<Deposit>,
+    /// What did.
+    pub(super) colored: Vec<Deposit>,
+}
+
+impl Deposits {
+    #[inline]
+    pub(super) fn push(&mut self, texel: usize, rest: Rest) {
+        let kind = match rest.path == 0.0 {
+            true => &mut self.bare,
+            false => &mut self.colored,
+        };
+        let texel = texel as u32;
+        kind.push(Deposit { texel, rest });
+    }
 }
 
 /// Where the photons of one node went, per absorption level, in units of 2^-32 photon.
@@ -33,6 +70,8 @@ pub(super) struct Tally {
     bare: Vec<u64>,
     /// The sum of the squares of that.
     bare_squares: Vec<u64>,
+    /// Texels with sums that are not 0: a pass of a few photons costs what these cost.
+    touched: Touched,
     photons: u64,
     absorbed: [u64; MAX_LEVELS],
     truncated: [u64; MAX_LEVELS],
@@ -49,6 +88,7 @@ impl Tally {
             bare: vec![0; texels],
             bare_squares: vec![0; texels],
             texels: vec![0; texels * levels],
+            touched: Touched::new(texels),
             photons: 0,
             absorbed: zero,
             truncated: zero,
@@ -67,7 +107,16 @@ impl Tally {
 
     /// Forgets everything.
     pub(super) fn clear(&mut self) {
-        for sums in self.arrays_mut() {
+        let levels = self.levels;
+        for texel in self.touched.iter() {
+            self.texels[texel * levels..(texel + 1) * levels].fill(0);
+            self.squares[texel] = 0;
+            self.bare[texel] = 0;
+            self.bare_squares[texel] = 0;
+        }
+        self.touched.clear();
+        self.photons = 0;
+        for sums in [&mut self.absorbed, &mut self.truncated, &mut self.lost] {
             sums.fill(0);
         }
     }
@@ -108,6 +157,7 @@ impl Tally {
 
     /// [`Tally::arrays`] to be filled.
     pub(super) fn arrays_mut(&mut self) -> [&mut [u64]; Self::ARRAYS] {
+        self.touched.insert_all();
         [
             std::slice::from_mut(&mut self.photons),
             &mut self.absorbed[..self.levels],
@@ -132,12 +182,20 @@ impl Tally {
 
     /// What left through a texel without having met pigment, the same at all levels, and the sum of
     /// its squares.
+    #[inline]
     pub(super) fn bare(&self, texel: usize) -> (u64, u64) {
+        if !self.touched.has(texel) {
+            return (0, 0);
+        }
         (self.bare[texel], self.bare_squares[texel])
     }
 
     /// What left through a texel and had met pigment, at the clear level, and the sum of its squares.
+    #[inline]
     pub(super) fn colored(&self, texel: usize) -> (u64, u64) {
+        if !self.touched.has(texel) {
+            return (0, 0);
+        }
         (self.texels[texel * self.levels], self.squares[texel])
     }
 
@@ -148,22 +206,20 @@ impl Tally {
 
     /// What left at a level.
     pub(super) fn escaped(&self, level: usize) -> u64 {
-        let colored = self.texels.iter().skip(level).step_by(self.levels);
-        self.bare.iter().sum::<u64>() + colored.sum::<u64>()
+        let sum = |texel| self.bare[texel] + self.texels[texel * self.levels + level];
+        self.touched.iter().map(sum).sum()
     }
 
     /// What left through a texel at the clear level and the variance of that, in photons.
     pub(super) fn at_clear(&self, texel: usize) -> (f64, f64) {
         let photons = |sum: u64| sum as f64 / PHOTON as f64;
-        (
-            photons(self.bare[texel] + self.texels[texel * self.levels]),
-            photons(self.bare_squares[texel] + self.squares[texel]),
-        )
+        let ((a, a2), (b, b2)) = (self.bare(texel), self.colored(texel));
+        (photons(a + b), photons(a2 + b2))
     }
 
-    /// A photon was sent out. Its parts follow.
-    pub(super) fn emit(&mut self) {
-        self.photons += 1;
+    /// So many photons were sent out. Their parts follow.
+    pub(super) fn emit(&mut self, photons: u64) {
+        self.photons += photons;
     }
 
     /// A photon never met the fiber: it does not count.
@@ -171,19 +227,60 @@ impl Tally {
         self.photons -= 1;
     }
 
-    /// Part of a photon left through `texel`.
-    pub(super) fn escape(&mut self, texel: usize, rest: Rest, levels: &[f64]) {
-        let weights = self.arrive(rest, levels);
-        if rest.path == 0.0 {
-            self.bare[texel] += weights[0];
-            self.bare_squares[texel] += square(weights[0]);
-            return;
+    /// Parts of photons left. What was collected is empty then.
+    pub(super) fn escape(&mut self, deposits: &mut Deposits, levels: &[f64]) {
+        let mut absorbed = 0;
+        for Deposit { texel, rest } in deposits.bare.drain(..) {
+            let texel = texel as usize;
+            let weight = whole(rest.clear());
+            self.touched.insert(texel);
+            self.bare[texel] += weight;
+            self.bare_squares[texel] += square(weight);
+            absorbed += rest.part - weight;
         }
-        let run = &mut self.texels[texel * self.levels..(texel + 1) * self.levels];
-        for (sum, weight) in run.iter_mut().zip(weights) {
-            *sum += weight;
+        for sum in &mut self.absorbed[..self.levels] {
+            *sum += absorbed;
         }
-        self.squares[texel] += square(weights[0]);
+        for deposits in deposits.colored.chunks(SIDE_BY_SIDE) {
+            match self.levels {
+                // The usual number, unrolled.
+                12 => self.escape_colored::<6>(deposits, levels),
+                _ => self.escape_colored::<{ MAX_LEVELS / 2 }>(deposits, levels),
+            }
+        }
+        deposits.colored.clear();
+    }
+
+    /// Parts that met pigment left, of which `PAIRS` pairs of levels are computed.
+    fn escape_colored<const PAIRS: usize>(&mut self, deposits: &[Deposit], levels: &[f64]) {
+        let first = levels.get(1).copied().unwrap_or(0.0);
+        let mut left = [0.0; SIDE_BY_SIDE];
+        for (left, deposit) in left.iter_mut().zip(deposits) {
+            *left = decay(first * deposit.rest.path);
+        }
+        let (mut parts, mut sums) = (0, [u64x2::ZERO; PAIRS]);
+        for (&Deposit { texel, rest }, left) in deposits.iter().zip(left) {
+            let texel = texel as usize;
+            self.touched.insert(texel);
+            let weights = weights::<PAIRS>(rest, left);
+            let run = &mut self.texels[texel * self.levels..(texel + 1) * self.levels];
+            let (pairs, last) = run.as_chunks_mut::<2>();
+            for (k, weights) in weights.iter().enumerate() {
+                sums[k] += *weights;
+                if let Some(pair) = pairs.get_mut(k) {
+                    *pair = (u64x2::new(*pair) + *weights).to_array();
+                }
+            }
+            if let [last] = last {
+                *last += weights[pairs.len()].to_array()[0];
+            }
+            self.squares[texel] += square(weights[0].to_array()[0]);
+            parts += rest.part;
+        }
+        let sums = sums.iter().flat_map(|pair| pair.to_array());
+        for (sum, left) in self.absorbed[..self.levels].iter_mut().zip(sums) {
+            *sum += parts - left;
+        }
     }
 
     /// Part of a photon was given up.
@@ -205,26 +302,27 @@ impl Tally {
 
     /// Books what was taken of a part on its way; returns what is left at each level.
     fn arrive(&mut self, rest: Rest, levels: &[f64]) -> [u64; MAX_LEVELS] {
-        let weights = weights(rest, levels);
-        for (absorbed, weight) in self.absorbed.iter_mut().zip(&weights).take(levels.len()) {
-            *absorbed += rest.part - weight;
+        let first = levels.get(1).copied().unwrap_or(0.0);
+        let pairs = weights::<{ MAX_LEVELS / 2 }>(rest, decay(first * rest.path));
+        let mut weights = [0; MAX_LEVELS];
+        let all = pairs.iter().flat_map(|pair| pair.to_array());
+        for (k, (weight, found)) in weights.iter_mut().zip(all).take(self.levels).enumerate() {
+            *weight = found;
+            self.absorbed[k] += rest.part - found;
         }
         weights
     }
 
     pub(super) fn add(&mut self, other: &Self) {
-        for (a, b) in self.texels.iter_mut().zip(&other.texels) {
-            *a += b;
+        let levels = self.levels;
+        for texel in other.touched.iter() {
+            let run = texel * levels..(texel + 1) * levels;
+            add(&mut self.texels[run.clone()], &other.texels[run]);
+            self.squares[texel] += other.squares[texel];
+            self.bare[texel] += other.bare[texel];
+            self.bare_squares[texel] += other.bare_squares[texel];
         }
-        for (sums, others) in [
-            (&mut self.squares, &other.squares),
-            (&mut self.bare, &other.bare),
-            (&mut self.bare_squares, &other.bare_squares),
-        ] {
-            for (a, b) in sums.iter_mut().zip(others) {
-                *a += b;
-            }
-        }
+        self.touched.insert_those(&other.touched);
         self.photons += other.photons;
         add(&mut self.absorbed, &other.absorbed);
         add(&mut self.truncated, &other.truncated);
@@ -233,10 +331,15 @@ impl Tally {
 
     /// The books, per level.
     pub(super) fn ledger(&self) -> Vec<Ledger> {
+        let (mut bare, mut escaped) = (0, vec![0; self.levels]);
+        for texel in self.touched.iter() {
+            bare += self.bare[texel];
+            add(&mut escaped, self.run(texel));
+        }
         (0..self.levels)
             .map(|k| Ledger {
                 emitted: self.photons * PHOTON,
-                escaped: self.escaped(k),
+                escaped: bare + escaped[k],
                 absorbed: self.absorbed[k],
                 truncated: self.truncated[k],
                 lost: self.lost[k],
@@ -247,6 +350,7 @@ impl Tally {
     /// Averages the map with its mirror image phi -> -phi. The sum stays exact: an odd unit goes to
     /// the texel with the lower number.
     pub(super) fn fold(&mut self, cube: &Unicube) {
+        self.touched.insert_all();
         for texel in 0..cube.texels() {
             let mirror = cube.mirrored(texel);
             if texel < mirror {
@@ -302,25 +406,52 @@ fn square(weight: u64) -> u64 {
     (weight * (weight >> 1)) / (PHOTON >> 1)
 }
 
-fn add(a: &mut [u64; MAX_LEVELS], b: &[u64; MAX_LEVELS]) {
+fn add(a: &mut [u64], b: &[u64]) {
     for (a, b) in a.iter_mut().zip(b) {
         *a += b;
     }
 }
 
-/// The fixed-point weight `part * share * exp(-level * path)` of every level. Levels from the second on are a
-/// geometric series of ratio 2, so each weight is the square of the one before.
+impl Rest {
+    /// What is left at the clear level, in units of 2^-32 photon.
+    #[inline]
+    fn clear(self) -> f64 {
+        // Signed numbers are converted in one step.
+        self.share * self.part as i64 as f64
+    }
+}
+
+/// The nearest whole number of one from 0 to 2^51, exactly.
 #[inline]
-fn weights(rest: Rest, levels: &[f64]) -> [u64; MAX_LEVELS] {
-    let mut weights = [0; MAX_LEVELS];
-    let clear = rest.share * rest.part as f64;
-    weights[0] = clear as u64;
-    let mut left = levels
-        .get(1)
-        .map_or(0.0, |first| (-first * rest.path).exp());
-    for weight in weights.iter_mut().take(levels.len()).skip(1) {
-        *weight = (left * clear) as u64;
-        left *= left;
+fn whole(x: f64) -> u64 {
+    (x + SHIFT).to_bits() & BELOW_SHIFT
+}
+
+/// 2^52: added to a number it leaves no place for a fraction. Unlike a conversion this can be done side by
+/// side on any x86-64.
+const SHIFT: f64 = (1u64 << 52) as f64;
+const BELOW_SHIFT: u64 = (1 << 52) - 1;
+
+/// The fixed-point weight `part * share * exp(-level * path)` of every level, in pairs. Levels from the second
+/// on are a geometric series of ratio 2, so each weight is the square of the one before.
+///
+/// * `left`: what the second level leaves.
+#[inline]
+fn weights<const PAIRS: usize>(rest: Rest, left: f64) -> [u64x2; PAIRS] {
+    let clear = f64x2::splat(rest.clear());
+    let mut weights = [u64x2::ZERO; PAIRS];
+    let mut pair = f64x2::new([1.0, left]);
+    for (k, weight) in weights.iter_mut().enumerate() {
+        if k == 1 {
+            let square = left * left;
+            pair = f64x2::new([square, square * square]);
+        } else if k > 1 {
+            pair *= pair;
+            pair *= pair;
+        }
+        let shifted = pair * clear + f64x2::splat(SHIFT);
+        let bits = u64x2::new(shifted.to_array().map(f64::to_bits));
+        *weight = bits & u64x2::splat(BELOW_SHIFT);
     }
     weights
 }
@@ -335,7 +466,7 @@ mod tests {
         let levels = absorption_levels(12);
         let cube = Unicube::new(4);
         let mut tally = Tally::new(cube.texels(), levels.len());
-        let mut emitted = 0;
+        let (mut emitted, mut deposits) = (0, Deposits::default());
         for i in 0..1000u32 {
             let rest = Rest {
                 part: PHOTON / u64::from(1 + i % 3),
@@ -347,7 +478,10 @@ mod tests {
                 0 => tally.truncate(rest, &levels),
                 1 => tally.lose(rest, &levels),
                 2 => tally.absorb(rest, &levels),
-                _ => tally.escape(i as usize % cube.texels(), rest, &levels),
+                _ => {
+                    deposits.push(i as usize % cube.texels(), rest);
+                    tally.escape(&mut deposits, &levels);
+                }
             }
         }
         tally.fold(&cube);
@@ -360,7 +494,8 @@ mod tests {
             share: 0.3,
             path: 0.7,
         };
-        let weights = weights(rest, &levels);
+        let weights = weights::<6>(rest, (-levels[1] * rest.path).exp());
+        let weights = weights.iter().flat_map(|pair| pair.to_array());
         for (level, weight) in levels.iter().zip(weights) {
             let exact = 0.3 * (-level * 0.7).exp();
             assert!((weight as f64 / PHOTON as f64 - exact).abs() < 1e-9);

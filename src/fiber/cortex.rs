@@ -53,10 +53,15 @@ impl Pigment {
         }
     }
 
+    /// Whether it is alike all over the cortex.
+    pub(super) fn is_even(&self) -> bool {
+        self.lean.is_none() && self.streaks.is_none()
+    }
+
     /// Integral of the density along a ray through keratin from 0 to `t`, micrometers.
     #[inline]
     pub(super) fn along(&self, ray: &UnitRay, t: f64, pieces: Option<&Pieces>) -> f64 {
-        let even = self.lean.is_none() && self.streaks.is_none();
+        let even = self.is_even();
         if even && (self.walls == 1.0 || self.ratio <= 0.0) {
             return t;
         }

@@ -356,6 +356,23 @@ impl Fiber {
         }
     }
 
+    /// The refractive index, over that of the medium around it, of a fiber that is a smooth circular cylinder
+    /// of evenly pigmented keratin and nothing else, denser than what is around it; `None` for all others.
+    pub fn bare_cylinder(&self) -> Option<f64> {
+        let eta = self.eta(Region::Outside, Region::Cortex);
+        let cortex = self.medium(Region::Cortex);
+        let is_bare = self.triangles.is_none()
+            && matches!(self.surface, Surface::Smooth)
+            && self.section.is_circle()
+            && self.medulla.ratio <= 0.0
+            && self.fusi.is_none()
+            && self.pigment.is_even()
+            && *self.optics(Part::Scale) == (Optics::Dielectric { roughness: 0.0 })
+            && (cortex.absorption_per_um, cortex.scattering_per_um) == (0.0, 0.0)
+            && eta > 1.0;
+        is_bare.then_some(eta)
+    }
+
     /// Share of the medulla's volume that is voids, gaps between its pieces counted; 0 without voids.
     pub fn air_fraction(&self) -> f64 {
         if let Some(triangles) = self.modeled() {

@@ -124,6 +124,11 @@ impl Section {
         self.outline.is_none()
     }
 
+    /// Whether it is a circle.
+    pub(super) fn is_circle(&self) -> bool {
+        self.is_ellipse() && self.a == self.b
+    }
+
     /// Radius of the section at an angle of the unit-circle frame, in units of the ellipse's.
     pub(super) fn rho(&self, psi: f64) -> f64 {
         self.outline.as_ref().map_or(1.0, |o| o.at(psi))

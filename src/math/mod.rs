@@ -1,5 +1,6 @@
-//! Frames, turns, the unicube map and Fresnel equations.
+//! Frames, turns, exponentials, the unicube map and Fresnel equations.
 
+pub mod decay;
 pub mod frame;
 pub mod fresnel;
 pub mod turn;

@@ -77,10 +77,11 @@ fn filtered_maps_keep_their_sums_and_are_nearer_to_the_truth_as_they_say() {
 
 /// Sums of a lopsided lobe, `copies` times the same photons.
 fn lobe(cube: &Unicube, copies: u32) -> Tally {
-    use crate::bake::tally::Rest;
+    use crate::bake::tally::{Deposits, Rest};
     let levels = crate::bake::absorption_levels(3);
     let mut tally = Tally::new(cube.texels(), levels.len());
     let mut rng = Rng::new(9, 9);
+    let mut deposits = Deposits::default();
     for i in 0..40_000u32 {
         let (theta, turn) = rng.normal_pair();
         let w = crate::math::frame::direction(0.1 + 0.15 * theta, 0.8 * turn);
@@ -89,9 +90,10 @@ fn lobe(cube: &Unicube, copies: u32) -> Tally {
             share: 1.0,
             path: f64::from(i % 2) * rng.uniform(),
         };
-        tally.emit();
-        tally.escape(cube.texel(w), rest, &levels);
+        tally.emit(1);
+        deposits.push(cube.texel(w), rest);
     }
+    tally.escape(&mut deposits, &levels);
     for _ in 0..copies.ilog2() {
         let same = tally.clone();
         tally.add(&same);

@@ -59,7 +59,7 @@ pub(super) struct Args {
     /// Stop when the noise of the table is below this: relative L2 error of S, for instance 1% or 0.01.
     #[arg(long, value_name = "ERROR", value_parser = parse_share)]
     target_error: Option<f64>,
-    /// Stop after this time, for instance 30s or 2m, with what is done by then.
+    /// Have a table written after this time, for instance 30s or 2m, with what is done by then.
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
     time: Option<Duration>,
     /// Bake only a part, the second of three for instance, into a file of exact sums

@@ -10,13 +10,16 @@ use crate::fiber::Fiber;
 use crate::io::check_writable;
 use crate::species::{self, Structure};
 use crate::table::{Provenance, Undyed};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), Failure> {
     let species = species::load(&args.name, &args.set)?;
     let class = find_class(&species, args.class.as_deref())?;
     let station = find_station(class, args.station)?;
     let settings = settings(args);
+    let until = args
+        .time
+        .map(|time| start + time - writing(&settings).min(time / 2));
     check_output(args)?;
     check_writable(&args.output)?;
     if station.structure.mesh.is_some() {
@@ -38,7 +41,7 @@ pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), 
             .then(|| band.absorption_per_um()),
         goal: Goal {
             error: args.target_error,
-            until: args.time.map(|time| start + time),
+            until,
         },
         cache: Cache::of_user().filter(|_| !args.no_cache),
     };
@@ -49,6 +52,13 @@ pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), 
         ));
     }
     job.run()
+}
+
+/// About how long a table takes to be written and to be safe on a disk.
+fn writing(settings: &Settings) -> Duration {
+    const SECONDS_A_BYTE: f64 = 3e-9;
+    let samples = settings.bins * 6 * settings.face * settings.face * (settings.levels.len() + 1);
+    Duration::from_secs_f64(4.0 * samples as f64 * SECONDS_A_BYTE)
 }
 
 /// Shards are sums, whole bakes are tables: a name that says otherwise is a mistake.

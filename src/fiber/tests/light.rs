@@ -23,7 +23,7 @@ fn paths(fiber: &Fiber, count: u64) -> Vec<(f64, f64)> {
         };
         let flight = fly(fiber, &photon, 100_000);
         assert!(!matches!(flight.end, End::Lost | End::Truncated));
-        matches!(flight.end, End::Escaped(_)).then_some((flight.theta.cos(), flight.path_um))
+        matches!(flight.end, End::Escaped(_)).then_some((flight.theta().cos(), flight.path_um))
     });
     flights.collect()
 }
