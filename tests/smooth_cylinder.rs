@@ -20,8 +20,8 @@ const ETA: f64 = 1.55;
 const MAX_EVENTS: u32 = 16;
 /// Points of the expected maps, two for each photon of a bin.
 const RAYS: u32 = 250_000;
-/// Level of optical depth 0.2 and the last level, at which only R is left.
-const DYED: usize = 5;
+/// Level of optical depth 0.16 and the last level, at which only R is left.
+const DYED: usize = 2;
 const LAST: usize = 11;
 
 fn glass(settings: &Settings) -> StructureTable {
@@ -206,7 +206,7 @@ fn lobe_energies_agree() {
 #[test]
 fn light_leaves_on_its_cone_and_where_it_should() {
     let table = paper();
-    for (level, tau) in [(0, 0.0), (DYED, 0.2)] {
+    for (level, tau) in [(0, 0.0), (DYED, 0.16)] {
         assert!((table.levels[level] - tau).abs() < 1e-12);
         (0..table.nodes.len()).into_par_iter().for_each(|node| {
             let (from, to) = bin(table, node);

@@ -7,6 +7,7 @@
 //! as much of it in every part; what is drawn is the count.
 
 use super::Settings;
+use super::deposit::whole;
 use crate::fiber::Fiber;
 use crate::sampling::hash64;
 use crate::table::PHOTON;
@@ -101,7 +102,7 @@ impl Cylinder {
             step,
         } = self.paths(sin, h);
         let mut u = (random >> 11) as i64 as f64 * (1.0 / (1u64 << 53) as f64);
-        let mut part = (reflectance * PHOTON as f64) as i64 as u64;
+        let mut part = whole(reflectance * PHOTON as f64);
         if !self.fork {
             // By chance; what is left of the random number serves for what goes in.
             part = if u < reflectance { PHOTON } else { 0 };
@@ -217,7 +218,7 @@ mod tests {
         let mut counts = [0u32; 3];
         for i in 0..n {
             let ways = cylinder.ways(sin, h, chance.at(i));
-            assert_eq!(ways.part, (paths.reflectance * PHOTON as f64) as u64);
+            assert_eq!(ways.part, whole(paths.reflectance * PHOTON as f64));
             let chords = (ways.path / paths.chord).round() as usize;
             assert!(chords == 1 || chords == 2);
             counts[if ways.transmitted.is_some() {

@@ -10,6 +10,7 @@ mod cache;
 mod checkpoint;
 mod content;
 mod cylinder;
+mod deposit;
 mod difference;
 mod entry;
 mod find;

@@ -1,8 +1,9 @@
 //! The photons of one node, flown and tallied.
 
 use super::cylinder::{Chance, Cylinder};
+use super::deposit::{Deposit, Deposits, Rest};
 use super::entry::{NODE_BITS, Stratified};
-use super::tally::{Deposit, Deposits, Rest, Tally};
+use super::tally::Tally;
 use super::{End, Flight, Photon, Settings, fly, fly_forked};
 use crate::fiber::Fiber;
 use crate::math::frame::shift_inclination;

@@ -77,7 +77,7 @@ fn filtered_maps_keep_their_sums_and_are_nearer_to_the_truth_as_they_say() {
 
 /// Sums of a lopsided lobe, `copies` times the same photons.
 fn lobe(cube: &Unicube, copies: u32) -> Tally {
-    use crate::bake::tally::{Deposits, Rest};
+    use crate::bake::deposit::{Deposits, Rest};
     let levels = crate::bake::absorption_levels(3);
     let mut tally = Tally::new(cube.texels(), levels.len());
     let mut rng = Rng::new(9, 9);
