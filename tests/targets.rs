@@ -73,7 +73,7 @@ fn reflected(structure: &Structure, photons: u64) -> Lobe {
         if azimuth(w) > SLIT_DEG {
             continue;
         }
-        let shift = (frame::theta_of(w) + flight.theta).to_degrees();
+        let shift = (frame::theta_of(w) + flight.theta()).to_degrees();
         let bin = shift / BIN + 0.5 * BINS as f64;
         if flight.events == 1 && (0.0..BINS as f64).contains(&bin) {
             bins[bin as usize] += 1.0;
@@ -146,7 +146,7 @@ fn forward(structure: &Structure) -> Forward {
     let share = |counts: &dyn Fn(&Flight, f64) -> bool| {
         let counted = flights.iter().filter(|f| {
             escaped(f).is_some_and(|w| {
-                let off_cone = (frame::theta_of(w) + f.theta).to_degrees().abs();
+                let off_cone = (frame::theta_of(w) + f.theta()).to_degrees().abs();
                 azimuth(w) > 165.0 && counts(f, off_cone)
             })
         });
