@@ -178,8 +178,11 @@ fn meaning(name: &str) -> &'static str {
         "layers" => "layers of the cuticle",
         "kappa" => "radius of the medulla over that of the fiber",
         "sigma_m_s" => "scattering of the medulla per radius",
-        "beta_m_s" => "longitudinal roughness of the scattered light",
-        "rho_s" => "azimuthal mean cosine of the scattered light, 1 straight through, -1 back",
+        "beta_m_s" => "longitudinal roughness of the light scattered on",
+        "rho_s" => "azimuthal mean cosine of the light scattered on about straight through",
+        "back_s" => "share of the scattered light that goes back",
+        "beta_m_b" => "longitudinal roughness of the light scattered back",
+        "rho_b" => "azimuthal mean cosine of the light scattered back about straight back",
         "path_s" => "path of the scattered light in the cortex, radii",
         _ => "",
     }

@@ -17,7 +17,8 @@ pub enum Model {
     Chiang,
     /// The double cylinder after Yan, Tseng, Jensen, Ramamoorthi 2015 and 2017: a cuticle of layers, a
     /// cortex, and a medulla that scatters. Their tabulated profiles of scattered light are replaced by
-    /// one lobe in closed form, a longitudinal lobe of its own width times a wrapped Cauchy in azimuth.
+    /// two lobes in closed form, one about straight through (TTs) and one about straight back (TRTs):
+    /// each a longitudinal lobe of its own width times a wrapped Cauchy in azimuth.
     DoubleCylinder,
 }
 
@@ -39,7 +40,7 @@ const CHIANG: [Shared; 4] = [
     shared("alpha_deg", [-12.0, 12.0], 1.0),
 ];
 
-const DOUBLE_CYLINDER: [Shared; 10] = [
+const DOUBLE_CYLINDER: [Shared; 13] = [
     shared("eta", [1.1, 2.2], 1.5),
     shared("beta_m", [0.04, 1.0], 0.3),
     shared("beta_n", [0.05, 1.0], 0.3),
@@ -48,8 +49,11 @@ const DOUBLE_CYLINDER: [Shared; 10] = [
     shared("kappa", [0.02, 0.98], 0.6),
     shared("sigma_m_s", [0.0, 20.0], 1.0),
     shared("beta_m_s", [0.1, 1.0], 0.6),
-    shared("rho_s", [-0.9, 0.9], 0.2),
+    shared("rho_s", [0.0, 0.95], 0.3),
     shared("path_s", [0.0, 12.0], 3.0),
+    shared("back_s", [0.0, 1.0], 0.4),
+    shared("beta_m_b", [0.1, 1.0], 0.6),
+    shared("rho_b", [0.0, 0.95], 0.3),
 ];
 
 /// Range and start of the absorption of a channel, per radius.
@@ -68,7 +72,7 @@ impl Model {
     pub fn lobes(self) -> &'static [&'static str] {
         match self {
             Self::Chiang => &["R", "TT", "TRT", "TRRT+"],
-            Self::DoubleCylinder => &["R", "TT", "TRT", "TRRT+", "TTs"],
+            Self::DoubleCylinder => &["R", "TT", "TRT", "TRRT+", "TTs", "TRTs"],
         }
     }
 
@@ -143,11 +147,14 @@ impl Model {
             scattered.iter_mut().zip(of(4)).for_each(|(s, e)| *s += e);
         }
         if self == Self::DoubleCylinder {
-            let cauchy = wrapped_cauchy(p[8]);
-            lobes.push(Lobe {
-                along: along(edges, theta_q, variance(p[7])),
-                around: scattered.iter().map(|s| cauchy.map(|c| c * s)).collect(),
-            });
+            let (back, forth) = (p[10], 1.0 - p[10]);
+            for (share, beta, rho) in [(forth, p[7], p[8]), (back, p[11], -p[12])] {
+                let cauchy = wrapped_cauchy(rho).map(|c| share * c);
+                lobes.push(Lobe {
+                    along: along(edges, theta_q, variance(beta)),
+                    around: scattered.iter().map(|s| cauchy.map(|c| c * s)).collect(),
+                });
+            }
         }
         lobes
     }
