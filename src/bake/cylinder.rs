@@ -130,18 +130,21 @@ pub(super) struct Chance {
 }
 
 impl Chance {
+    /// 2^64 over the golden ratio.
+    const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+
     pub(super) fn new(seed: u64, node: u64) -> Self {
+        // Not 0 for the first photon of seed 0, which the hash would leave at 0.
+        let seed = hash64(seed.wrapping_add(Self::STEP));
         Self {
-            key: hash64(hash64(seed).wrapping_add(node)),
+            key: hash64(seed.wrapping_add(node)),
         }
     }
 
     /// 64 uniform bits for a photon (SplitMix64, Steele et al. 2014).
     #[inline]
     pub(super) fn at(self, index: u64) -> u64 {
-        // 2^64 over the golden ratio.
-        const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
-        hash64(self.key.wrapping_add(index.wrapping_mul(STEP)))
+        hash64(self.key.wrapping_add(index.wrapping_mul(Self::STEP)))
     }
 }
 
@@ -232,6 +235,14 @@ mod tests {
             let sigma = (share * (1.0 - share) / n as f64).sqrt();
             let found = f64::from(*count) / n as f64;
             assert!((found - share).abs() < 4.0 * sigma, "{found} {share}");
+        }
+    }
+
+    #[test]
+    fn chance_has_no_special_photons() {
+        for node in 0..16 {
+            let first = Chance::new(0, node).at(0);
+            assert!((16..48).contains(&first.count_ones()), "{node}: {first:x}");
         }
     }
 
