@@ -6,7 +6,7 @@
 //! 2023).
 
 use crate::math::fresnel;
-use crate::math::turn::unit_vector;
+use crate::math::turn::unit_vector_of;
 use crate::sampling::Rng;
 use glam::DVec3;
 
@@ -45,7 +45,7 @@ impl Ratio {
 /// Smooth boundary: Fresnel decides by one random number.
 ///
 /// * `n`: unit normal against the ray.
-#[inline]
+#[inline(always)]
 pub(super) fn smooth(dir: DVec3, n: DVec3, ratio: Ratio, rng: &mut Rng) -> Turn {
     let Ratio { eta, inverse } = ratio;
     let cos_i = (-dir.dot(n)).clamp(0.0, 1.0);
@@ -141,7 +141,7 @@ impl Slope {
     }
 
     /// Smith's Lambda of GGX for a ray that goes up; for one that goes down it is `-1 - lambda`.
-    #[inline]
+    #[cold]
     fn lambda(self) -> f64 {
         0.5 * ((1.0 + self.across / self.along).sqrt() - 1.0)
     }
@@ -177,43 +177,42 @@ impl Depth {
         if self.flipped { 1.0 - share } else { share }
     }
 
-    /// No more than the share below.
-    #[inline]
-    fn least_share(self) -> f64 {
-        if self.flipped {
-            // Lambda is at most a quarter of the slope.
-            let Slope { across, along } = self.slope;
-            let exponent = 4.0 * along / (4.0 * along + across);
-            1.0 - self.top * (1.0 - exponent * (1.0 - self.base))
-        } else {
-            self.top * self.base
+    /// Whether a ray that goes up surely gets away: by bounds of both powers.
+    ///
+    /// It does if `1 - u < share^lambda`, which is at least `1 - lambda (1 / share - 1)`.
+    #[inline(always)]
+    fn lets_go(self, slope: Slope, u: f64) -> bool {
+        // Lambda is at most a quarter of the slope.
+        let gain = 4.0 * slope.along * u + slope.across;
+        if !self.flipped {
+            return self.top * self.base * gain > slope.across;
         }
+        let Slope { across, along } = self.slope;
+        let whole = 4.0 * along + across;
+        let least = whole - self.top * (whole - 4.0 * along * (1.0 - self.base));
+        least * gain > slope.across * whole
     }
 
     /// Where a ray on the microsurface meets it next; `None` if it gets away. `u`: uniform in 0..1.
-    #[inline]
+    #[inline(always)]
     fn free(self, d: DVec3, alpha: f64, u: f64) -> Option<Self> {
-        if d.z > 0.9999 {
-            return None;
+        let slope = Slope::new(d, alpha);
+        if d.z >= FLAT {
+            return match self.lets_go(slope, u) {
+                true => None,
+                false => self.free_by_power(slope, u),
+            };
         }
-        if d.z < -0.9999 {
-            return Some(Self::from_share(u * self.whole_share()));
-        }
-        if d.z.abs() < 1e-4 {
+        if d.z > -FLAT {
             return Some(self);
         }
-        let slope = Slope::new(d, alpha);
-        if d.z > 0.0 {
-            // It escapes if 1 - u < share^lambda, which is at least 1 - lambda (1 / share - 1).
-            let least = self.least_share();
-            if 4.0 * slope.along * u * least > slope.across * (1.0 - least) {
-                return None;
-            }
-            return self.free_by_power(slope.lambda(), u);
+        let top = self.whole_share();
+        if d.z < -STEEP {
+            return Some(Self::from_share(u * top));
         }
         // Downward -1 / Lambda is an exponent between 0 and 1.
         Some(Self {
-            top: self.whole_share(),
+            top,
             base: 1.0 - u,
             slope,
             flipped: false,
@@ -232,8 +231,11 @@ impl Depth {
 
     /// [`Depth::free`] upward where bounds do not decide.
     #[cold]
-    fn free_by_power(self, lambda: f64, u: f64) -> Option<Self> {
-        let share = self.share();
+    fn free_by_power(self, slope: Slope, u: f64) -> Option<Self> {
+        if slope.along > STEEP * STEEP {
+            return None;
+        }
+        let (share, lambda) = (self.share(), slope.lambda());
         if 1.0 - u < share.powf(lambda) {
             return None;
         }
@@ -243,11 +245,16 @@ impl Depth {
     }
 }
 
+/// A ray this steep leaves or meets the surface without regard to its slope, and one this flat stays
+/// at its depth; cosines.
+const STEEP: f64 = 0.9999;
+const FLAT: f64 = 1e-4;
+
 /// A microfacet normal visible from `w` (which may point below the horizon).
-#[inline]
+#[inline(always)]
 fn visible_normal(w: DVec3, alpha: f64, rng: &mut Rng) -> DVec3 {
     let v = DVec3::new(alpha * w.x, alpha * w.y, w.z).normalize();
-    let around = unit_vector(rng.uniform());
+    let around = unit_vector_of(rng.bits());
     let z = (1.0 - rng.uniform()) * (1.0 + v.z) - v.z;
     let r = (1.0 - z * z).max(0.0).sqrt();
     let h = DVec3::new(r * around.x, r * around.y, z) + v;

@@ -3,7 +3,7 @@
 use super::boundary;
 use super::microfacet::{self, Turn};
 use crate::fiber::{Fiber, Hit, Medium, Optics, Region};
-use crate::math::turn::unit_vector;
+use crate::math::turn::unit_vector_of;
 use crate::sampling::Rng;
 use glam::{DVec2, DVec3};
 
@@ -193,7 +193,7 @@ fn henyey_greenstein(dir: DVec3, g: f64, rng: &mut Rng) -> DVec3 {
         ((1.0 + g * g - s * s) / (2.0 * g)).clamp(-1.0, 1.0)
     };
     let sin = (1.0 - cos * cos).max(0.0).sqrt();
-    let around = unit_vector(rng.uniform());
+    let around = unit_vector_of(rng.bits());
     let (a, b) = dir.any_orthonormal_pair();
     (sin * around.x * a + sin * around.y * b + cos * dir).normalize()
 }

@@ -66,13 +66,12 @@ impl Bodies {
     ///
     /// Every body must be shorter than half the period, so that one image is the nearest.
     pub(super) fn new(convex: Vec<Convex>, period: f64, half: [f64; 2], unions: bool) -> Self {
-        let mean = convex.iter().map(|c| c.half.element_sum()).sum::<f64>()
-            / (3.0 * convex.len().max(1) as f64);
+        let mean = convex.iter().map(|c| c.half).sum::<DVec3>() / convex.len().max(1) as f64;
         let boxes: Vec<(DVec3, DVec3)> = convex
             .iter()
             .map(|c| (c.center - c.half, c.center + c.half))
             .collect();
-        let size = (1.5 * mean).clamp(0.2, 0.25 * period);
+        let size = (1.5 * mean).clamp(DVec3::splat(0.2), DVec3::splat(0.25 * period));
         let grid = Grid::new(half, period, size, &boxes, |index, lo, hi| {
             convex[index].may_touch(lo, hi)
         });
@@ -95,7 +94,8 @@ impl Bodies {
             store.owners[1].resize(store.quadrics.len(), index as u32);
             store.bodies.push(Body {
                 center: c.center,
-                reach2: c.half.length_squared(),
+                // A little more for the digits that a difference of squares loses.
+                reach2: c.reach2() + 1e-6,
                 planes: p..store.planes.len() as u32,
                 quadrics: q..store.quadrics.len() as u32,
                 island: c.island,
@@ -172,11 +172,13 @@ impl Bodies {
                 };
             }
         }
+        let mut met = Met::new(self.period);
+        let mut best: Option<(f64, u32)> = None;
         self.grid.walk(origin, dir, t0, t1, |members, z| {
-            let mut best: Option<(f64, u32)> = None;
             for &index in members {
                 // A convex body that has been left is not met again.
-                if Some(index) == start && self.is_here(index, origin.z, z)
+                if met.before(index, z)
+                    || Some(index) == start && self.is_here(index, origin.z, z)
                     || self.bodies[index as usize].island
                 {
                     continue;
@@ -310,7 +312,8 @@ impl Bodies {
     ) -> Option<Chord> {
         let body = &self.bodies[index as usize];
         let o = origin - self.center_near(body, z);
-        if (o - o.dot(dir) * dir).length_squared() > body.reach2 {
+        let along = o.dot(dir);
+        if o.length_squared() - along * along > body.reach2 {
             return None;
         }
         let mut chord = Chord {
@@ -340,6 +343,42 @@ impl Bodies {
             }
         }
         (chord.enter < chord.leave).then_some(chord)
+    }
+}
+
+/// The bodies that a ray has been tested with last: they reach over several cells of the grid.
+struct Met {
+    bodies: [u32; Met::KEPT],
+    heights: [f64; Met::KEPT],
+    next: usize,
+    /// Two images of a body are farther apart than this, two cells that it reaches into are nearer.
+    near: f64,
+}
+
+impl Met {
+    /// A power of two.
+    const KEPT: usize = 8;
+
+    #[inline]
+    fn new(period: f64) -> Self {
+        Self {
+            bodies: [u32::MAX; Self::KEPT],
+            heights: [0.0; Self::KEPT],
+            next: 0,
+            near: 0.25 * period,
+        }
+    }
+
+    /// Whether a body's image next to `z` is among them; if not it is from now on.
+    #[inline]
+    fn before(&mut self, index: u32, z: f64) -> bool {
+        let known = (0..Self::KEPT)
+            .any(|i| self.bodies[i] == index && (self.heights[i] - z).abs() < self.near);
+        if !known {
+            (self.bodies[self.next], self.heights[self.next]) = (index, z);
+            self.next = (self.next + 1) % Self::KEPT;
+        }
+        known
     }
 }
 

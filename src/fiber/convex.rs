@@ -48,6 +48,21 @@ pub(super) fn holds(p: DVec3, planes: &[Plane], quadrics: &[Quadric]) -> bool {
 }
 
 impl Quadric {
+    /// No less than the square of the largest semi-axis, by a few percent; infinite for a cylinder.
+    fn reach2(&self) -> f64 {
+        // The largest eigenvalue is at most the root of the trace of a power.
+        let inverse = self.map.inverse();
+        let mut power = inverse.transpose() * inverse;
+        if !power.is_finite() {
+            return f64::INFINITY;
+        }
+        for _ in 0..4 {
+            power = power * power;
+        }
+        let trace = power.x_axis.x + power.y_axis.y + power.z_axis.z;
+        trace.powf(1.0 / 16.0)
+    }
+
     /// Where a ray is inside; `on` if it starts on the surface.
     #[inline]
     pub(super) fn inside(&self, o: DVec3, dir: DVec3, on: bool) -> Option<(f64, f64)> {
@@ -76,6 +91,13 @@ impl Quadric {
 }
 
 impl Convex {
+    /// Square of the radius of a ball about the center that holds it: of its box, or of an ellipsoid
+    /// about the center where that is smaller.
+    pub(super) fn reach2(&self) -> f64 {
+        let centered = self.quadrics.iter().filter(|q| q.center == DVec3::ZERO);
+        centered.fold(self.half.length_squared(), |least, q| least.min(q.reach2()))
+    }
+
     /// Whether it may reach into a box: not if the box lies beyond one of its planes.
     pub(super) fn may_touch(&self, lo: DVec3, hi: DVec3) -> bool {
         let (middle, half) = (0.5 * (lo + hi) - self.center, 0.5 * (hi - lo));

@@ -4,11 +4,8 @@ use super::march::Window;
 
 /// Convergence of a hit, in units of the radius over the ray's radial speed.
 const TOLERANCE: f64 = 1e-12;
-/// A step this small, in the same units, is the last of the secants: the next would be smaller by
-/// the share that the slope is off, a thousandth and less.
-const LAST_STEP: f64 = 1e-9;
-/// f is known to some roundings of its terms, which are about 1.
-const ROUNDING: f64 = 5e-16;
+/// A step this small, in the same units, is the last of Newton's: the next would be about its square.
+const LAST_STEP: f64 = 1e-8;
 
 /// `c + 2 b t + a t^2`.
 #[derive(Clone, Copy)]
@@ -54,8 +51,7 @@ impl Quadratic {
 }
 
 /// `f = rho^2 - (1 + E)^2` along the ray in one cell; the ray's parameter x runs from 0 to 1 in it.
-pub(super) struct Crossing<'a> {
-    pub(super) window: &'a Window<'a>,
+pub(super) struct Crossing {
     pub(super) sign: f64,
     /// The way through the cell, micrometers.
     pub(super) length: f64,
@@ -65,38 +61,40 @@ pub(super) struct Crossing<'a> {
     /// rho^2 and signed f at the start.
     pub(super) rho2: f64,
     pub(super) c: f64,
-    /// Coefficients of `rho^2 = rho2 + 2 c1 x + c2 x^2`.
+    /// Coefficients of `rho^2 = rho2 + 2 c1 t + c2 t^2`.
     pub(super) c1: f64,
     pub(super) c2: f64,
 }
 
-impl Crossing<'_> {
-    /// First crossing, as way from the cell's start.
-    ///
-    /// * `c_end`: rho^2 at the end.
-    ///
-    /// With E replaced by its chord f is a quadratic with exact values at both ends. Its root starts
-    /// the search: E is so nearly linear in a cell that each pass wins many digits.
+impl Crossing {
+    /// Whether a ray that ends on the side where it started may have been on the other: f by the
+    /// chord has two roots in the cell.
     #[inline]
-    pub(super) fn first(&self, c_end: f64, on_face: bool) -> Option<f64> {
-        let odd = self.sign * (c_end - self.r1 * self.r1) < 0.0;
-        if !odd && on_face {
-            return None;
-        }
-        if self.length <= 0.0 {
-            return odd.then_some(0.0);
-        }
+    pub(super) fn may_pair(&self) -> bool {
         let q = self.chord(self.r1 - self.r0);
-        let pair = || q.b < 0.0 && -q.b < q.a && q.b * q.b > q.a * q.c;
-        (odd || pair()).then(|| self.length * self.refine(q))
+        q.b < 0.0 && -q.b < q.a && q.b * q.b > q.a * q.c && self.length > 0.0
     }
 
-    /// f with E replaced by the chord that rises by `rise` over the cell.
+    /// First crossing, as way from the cell's start, where there is one.
+    ///
+    /// With E replaced by its chord f is a quadratic with exact values at both ends. Its root starts
+    /// the search: E is so nearly linear in a cell that one or two steps do.
+    #[inline]
+    pub(super) fn first(&self, window: &Window<'_>) -> f64 {
+        if self.length <= 0.0 {
+            return 0.0;
+        }
+        let x = self.root(self.chord(self.r1 - self.r0));
+        self.newton(window, x * self.length)
+            .unwrap_or_else(|| self.chords(window, x) * self.length)
+    }
+
+    /// f by x with E replaced by the chord that rises by `rise` over the cell.
     #[inline]
     fn chord(&self, rise: f64) -> Quadratic {
         Quadratic {
-            a: self.sign * (self.c2 - rise * rise),
-            b: self.sign * (self.c1 - self.r0 * rise),
+            a: self.sign * (self.c2 * self.length * self.length - rise * rise),
+            b: self.sign * (self.c1 * self.length - self.r0 * rise),
             c: self.c,
         }
     }
@@ -113,65 +111,54 @@ impl Crossing<'_> {
         x.clamp(0.0, 1.0)
     }
 
+    /// Newton's steps from way `t` to the root of `rho^2 w^2 - (w (1 + E))^2`, which has the sign of f and
+    /// is a polynomial. `None` where they do not converge at once: at grazing rays, where f has two
+    /// near roots.
     #[inline]
-    fn radius(&self, x: f64) -> f64 {
-        let t = x * self.length;
-        self.window.radius(self.window.across(t), t)
-    }
-
-    /// Signed f.
-    #[inline]
-    fn at(&self, x: f64) -> f64 {
-        let r = self.radius(x);
-        self.sign * (self.rho2 + x * (2.0 * self.c1 + x * self.c2) - r * r)
-    }
-
-    #[inline]
-    fn refine(&self, q: Quadratic) -> f64 {
-        let x = self.root(q);
-        // The slope of the chord's quadratic serves the first step, secants the others.
-        self.secant(x, 2.0 * (q.b + q.a * x))
-            .unwrap_or_else(|| self.chords(x))
-    }
-
-    /// Secants from `x`, where f has about `slope`. `None` where they do not converge at once: at
-    /// grazing rays, where f has two near roots.
-    #[inline]
-    fn secant(&self, mut x: f64, mut slope: f64) -> Option<f64> {
-        let mut f = self.at(x);
-        let mut last = 0.5;
+    fn newton(&self, window: &Window<'_>, mut t: f64) -> Option<f64> {
+        let ([w0, w1], [s0, s1, s2]) = window.surface();
+        let (b, a) = (self.c1, self.c2);
+        let mut last = 0.5 * self.length;
         for _ in 0..4 {
-            if f.abs() <= ROUNDING {
-                return Some(x);
-            }
-            let move_by = -f / slope;
-            let next = x + move_by;
+            let w = w0 + t * w1;
+            let (s, ds) = (s0 + t * (s1 + t * s2), s1 + 2.0 * t * s2);
+            let rho2 = self.rho2 + t * (2.0 * b + t * a);
+            let f = rho2 * (w * w) - s * s;
+            let half_slope = (b + t * a) * (w * w) + rho2 * w * w1 - s * ds;
+            let move_by = -0.5 * f / half_slope;
+            let next = t + move_by;
             // Written so that NaN fails too.
-            if !(slope < 0.0 && move_by.abs() <= 0.1 * last && (0.0..=1.0).contains(&next)) {
+            if !(self.sign * half_slope < 0.0
+                && move_by.abs() <= 0.1 * last
+                && (0.0..=self.length).contains(&next))
+            {
                 return None;
             }
-            if move_by * move_by * self.c2 <= LAST_STEP * LAST_STEP {
+            if move_by * move_by * a <= LAST_STEP * LAST_STEP {
                 return Some(next);
             }
-            let value = self.at(next);
-            slope = (value - f) / (next - x);
-            (x, f, last) = (next, value, move_by.abs());
+            (t, last) = (next, move_by.abs());
         }
         None
     }
 
     /// Roots of chords from the start to the last estimate: slower, and sure.
     #[cold]
-    fn chords(&self, mut x: f64) -> f64 {
+    fn chords(&self, window: &Window<'_>, mut x: f64) -> f64 {
+        let radius = |x: f64| {
+            let t = x * self.length;
+            window.radius(window.across(t), t)
+        };
         // A handful for most; where lifted scales twist the strip each wins one digit only.
         for _ in 0..40 {
             if x <= 0.0 {
                 break;
             }
-            let next = self.root(self.chord((self.radius(x) - self.r0) / x));
+            let next = self.root(self.chord((radius(x) - self.r0) / x));
             let moved = (next - x).abs();
             x = next;
-            if moved * moved * self.c2 <= TOLERANCE * TOLERANCE {
+            let way = moved * self.length;
+            if way * way * self.c2 <= TOLERANCE * TOLERANCE {
                 break;
             }
         }

@@ -31,7 +31,7 @@ impl Froth {
             .map(|s| (s.center - s.radius, s.center + s.radius))
             .collect();
         // About one sphere a cell.
-        let size = 2.0 * mean.max(0.25);
+        let size = DVec3::splat(2.0 * mean.max(0.25));
         let grid = Grid::new(half, period, size, &boxes, |index, lo, hi| {
             let Sphere { center, radius } = spheres[index];
             center.clamp(lo, hi).distance_squared(center) <= radius * radius * (1.0 + 1e-9)

@@ -1,5 +1,6 @@
 //! A uniform grid of cells over a box that repeats along z: which items a ray may meet, in order.
 
+use super::section::floor;
 use glam::{DVec3, IVec3};
 
 /// Lists of items for each cell of one period.
@@ -21,7 +22,7 @@ const MOST_STEPS: u32 = 1_000_000;
 
 impl Grid {
     /// * `half`: half-widths of the box across, which lies about the axis.
-    /// * `size`: wanted edge of a cell, about the distance of items: smaller cells cost steps, larger
+    /// * `size`: wanted edges of a cell, about the distances of items: smaller cells cost steps, larger
     ///   ones tests.
     /// * `items`: the box of each item, lower and upper corner, at any z.
     /// * `touches`: whether an item reaches into a box, given its lower and upper corner; saying yes
@@ -29,7 +30,7 @@ impl Grid {
     pub(super) fn new(
         half: [f64; 2],
         period: f64,
-        size: f64,
+        size: DVec3,
         items: &[(DVec3, DVec3)],
         touches: impl Fn(usize, DVec3, DVec3) -> bool,
     ) -> Self {
@@ -72,7 +73,8 @@ impl Grid {
 
     #[inline]
     fn cell_of(&self, p: DVec3) -> IVec3 {
-        ((p - self.corner) / self.cell).floor().as_ivec3()
+        let at = (p - self.corner) / self.cell;
+        DVec3::new(floor(at.x), floor(at.y), floor(at.z)).as_ivec3()
     }
 
     #[inline]

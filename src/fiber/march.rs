@@ -6,7 +6,7 @@
 //! sides agree may a grazing pair of crossings hide, and the parabola through both ends tells.
 
 use super::crossing::{Crossing, Quadratic};
-use super::scales::{Cell, Plane, Scales, Strip, distance};
+use super::scales::{Cell, Plane, Scales, Strip, distance, larger, smaller};
 use super::section::UnitRay;
 use glam::DVec3;
 
@@ -55,8 +55,8 @@ const AXIAL: f64 = 1e100;
 #[derive(Clone, Copy, PartialEq)]
 enum Exit {
     Limit,
-    NextSector,
-    PreviousSector,
+    /// Into the next or the previous sector.
+    Sector,
     Up,
     Down,
 }
@@ -114,20 +114,25 @@ impl<'a> Window<'a> {
         1.0 + self.strip.height_at(u, self.z + t * self.dz)
     }
 
-    /// How far the ray stays in the cell and where it leaves.
+    /// The polynomials of the surface along the ray: `w = a + b` and `w (1 + E)`.
     #[inline]
-    fn leave(&self, turn: f64, on: StartOn, limit: f64, bare: bool) -> (f64, Exit) {
-        let (mut length, mut exit) = (limit.max(0.0), Exit::Limit);
-        if turn > 0.0 {
-            if self.db < 0.0 && self.b < -self.db * length {
-                (length, exit) = (self.b.max(0.0) / -self.db, Exit::NextSector);
-            }
-        } else if turn < 0.0 && self.da < 0.0 && self.a < -self.da * length {
-            (length, exit) = (self.a.max(0.0) / -self.da, Exit::PreviousSector);
-        }
-        if bare {
-            return (length, exit);
-        }
+    pub(super) fn surface(&self) -> ([f64; 2], [f64; 3]) {
+        let Strip { height, slope, .. } = self.strip;
+        let e0 = 1.0 + height[0] + slope[0] * self.z;
+        let e1 = 1.0 + height[1] + slope[1] * self.z;
+        let (de0, de1) = (slope[0] * self.dz, slope[1] * self.dz);
+        (
+            [self.a + self.b, self.da + self.db],
+            [
+                e0 * self.b + e1 * self.a,
+                e0 * self.db + e1 * self.da + de0 * self.b + de1 * self.a,
+                de0 * self.db + de1 * self.da,
+            ],
+        )
+    }
+
+    /// How far the ray stays between the strip's ends, up to `length`, and by which it leaves.
+    fn ends(&self, on: StartOn, mut length: f64, mut exit: Exit) -> (f64, Exit) {
         if length == f64::INFINITY {
             // An axial ray meets neither planes nor limit: only the strip's ends count.
             length = AXIAL;
@@ -161,6 +166,47 @@ impl<'a> Window<'a> {
     }
 }
 
+/// Which way round the axis a ray goes: through which half planes it leaves its sectors.
+#[derive(Clone, Copy)]
+struct Turn {
+    /// 1 toward larger angles, which the second plane of a sector ends.
+    plane: usize,
+    /// The sign of the distance from that plane within a sector; 0 if the ray never leaves its one.
+    sign: f64,
+}
+
+impl Turn {
+    fn of(ray: &UnitRay) -> Self {
+        let turn = ray.x * ray.dy - ray.y * ray.dx;
+        let sign = if turn == 0.0 {
+            0.0
+        } else {
+            -1.0_f64.copysign(turn)
+        };
+        Self {
+            plane: usize::from(turn > 0.0),
+            sign,
+        }
+    }
+
+    /// How far a ray from `p` stays in a sector, if it leaves it before `limit`.
+    ///
+    /// With a branch, though the processor often guesses it wrong: a right guess hides the division.
+    #[inline(always)]
+    fn way(self, planes: &[Plane; 2], p: DVec3, ray: &UnitRay, limit: f64) -> Option<f64> {
+        let plane = planes[self.plane];
+        let way = self.sign * distance(plane, p.x, p.y);
+        let rate = -self.sign * distance(plane, ray.dx, ray.dy);
+        (rate > 0.0 && way < rate * limit).then(|| larger(way, 0.0) / rate)
+    }
+
+    /// Position in a sector of the plane that ends the way.
+    #[inline(always)]
+    fn u(self) -> f64 {
+        self.plane as f64
+    }
+}
+
 impl Scales {
     /// Follows `ray` from `t` in `cell` on `side` up to `limit`.
     pub(super) fn march(
@@ -174,7 +220,7 @@ impl Scales {
     ) -> March {
         // Positive outside, so that `sign * f` is positive on the ray's side.
         let sign = if side == Side::Outside { 1.0 } else { -1.0 };
-        let turn = ray.x * ray.dy - ray.y * ray.dx;
+        let turn = Turn::of(ray);
         let mut p = ray.at(t);
         let mut c0 = p.x * p.x + p.y * p.y;
         // 1 + E at the start of the cell; on the surface it is the radius itself.
@@ -184,51 +230,67 @@ impl Scales {
             self.radius(cell, self.across(cell.sector, p.x, p.y), p.z)
         };
         for _ in 0..MAX_CELLS {
-            let window = Window::new(
-                self.sectors[cell.sector].planes,
-                self.strip(cell),
-                cell,
-                p,
-                ray,
-            );
-            let (length, exit) = window.leave(turn, on, limit - t, self.bare);
+            let strip = self.strip(cell);
+            let planes = &self.sectors[cell.sector].planes;
+            let z = p.z - cell.shift;
+            let rest = larger(limit - t, 0.0);
+            let (mut length, mut exit) = match turn.way(planes, p, ray, rest) {
+                Some(way) => (way, Exit::Sector),
+                None => (rest, Exit::Limit),
+            };
+            if !(strip.holds(z, z + length * ray.dz) || self.bare) {
+                let window = Window::new(*planes, strip, cell, p, ray);
+                (length, exit) = window.ends(on, length, exit);
+            }
             if length == f64::INFINITY {
                 return March::Lost;
             }
             let end = ray.at(t + length);
             let c_end = end.x * end.x + end.y * end.y;
-            let u1 = window.across(length);
             let on_face = on == StartOn::Face;
-            let crossing = Crossing {
-                window: &window,
-                sign,
-                length,
-                r0,
-                r1: window.radius(u1, length),
-                rho2: c0,
-                c: if on_face {
-                    0.0
-                } else {
-                    (sign * (c0 - r0 * r0)).max(0.0)
-                },
-                c1: (p.x * ray.dx + p.y * ray.dy) * length,
-                c2: ray.a * (length * length),
+            if exit == Exit::Limit && on_face && self.is_clear(c_end, side) {
+                return March::Through;
+            }
+            let u1 = match exit {
+                Exit::Sector => turn.u(),
+                _ => self.across(cell.sector, end.x, end.y),
             };
-            if let Some(tau) = crossing.first(c_end, on_face) {
-                let hit = ray.at(t + tau);
-                return March::Face {
-                    t: t + tau,
-                    cell,
-                    gradient: self.face_gradient(cell, hit),
+            let r1 = 1.0 + strip.height_at(u1, end.z - cell.shift);
+            let odd = sign * (c_end - r1 * r1) < 0.0;
+            if odd || !on_face {
+                let crossing = Crossing {
+                    sign,
+                    length,
+                    r0,
+                    r1,
+                    rho2: c0,
+                    c: if on_face {
+                        0.0
+                    } else {
+                        (sign * (c0 - r0 * r0)).max(0.0)
+                    },
+                    c1: p.x * ray.dx + p.y * ray.dy,
+                    c2: ray.a,
                 };
+                if odd || crossing.may_pair() {
+                    return self.face(&crossing, cell, (t, p), ray);
+                }
             }
             if exit == Exit::Limit {
                 return March::Through;
             }
             (t, p, c0) = (t + length, end, c_end);
             let old = cell;
-            let u;
-            (cell, on, u) = self.step(cell, exit, p.z, u1);
+            let mut u = u1;
+            match exit {
+                Exit::Limit => {}
+                Exit::Up => (cell, on) = (self.above(cell), StartOn::Lower),
+                Exit::Down => (cell, on) = (self.below(cell), StartOn::Upper),
+                Exit::Sector => {
+                    (cell, on) = (self.beyond(cell, turn.plane, p.z), StartOn::Nothing);
+                    u = 1.0 - u1;
+                }
+            }
             r0 = self.radius(cell, u, p.z);
             if sign * (c0 - r0 * r0) < 0.0 {
                 return self.step_hit(t, p, old, cell, exit, side);
@@ -237,22 +299,29 @@ impl Scales {
         March::Lost
     }
 
-    /// The cell behind an exit, what of it the ray starts on and its position across it.
+    /// The hit of a cell's face by a ray that is at `start` where it enters the cell.
+    #[inline(never)]
+    fn face(&self, crossing: &Crossing, cell: Cell, start: (f64, DVec3), ray: &UnitRay) -> March {
+        let (t, p) = start;
+        let planes = self.sectors[cell.sector].planes;
+        let window = Window::new(planes, self.strip(cell), cell, p, ray);
+        let t = t + crossing.first(&window);
+        March::Face {
+            t,
+            cell,
+            gradient: self.face_gradient(cell, ray.at(t)),
+        }
+    }
+
+    /// Whether a place is past the circle that ends the shell on `side`: no scale reaches there.
+    ///
+    /// * `rho2`: square of its radius.
     #[inline]
-    fn step(&self, cell: Cell, exit: Exit, z: f64, u: f64) -> (Cell, StartOn, f64) {
-        let (sector, u) = match exit {
-            Exit::Limit => return (cell, StartOn::Nothing, u),
-            Exit::Up => return (self.above(cell), StartOn::Lower, u),
-            Exit::Down => return (self.below(cell), StartOn::Upper, u),
-            Exit::NextSector => (self.next_sector(cell.sector), 0.0),
-            Exit::PreviousSector => (self.previous_sector(cell.sector), 1.0),
-        };
-        let near = Cell {
-            sector,
-            strip: cell.strip.min(self.count(sector) - 1),
-            ..cell
-        };
-        (self.settle(near, u, z), StartOn::Nothing, u)
+    fn is_clear(&self, rho2: f64, side: Side) -> bool {
+        match side {
+            Side::Inside => rho2 <= self.within2,
+            Side::Outside => rho2 >= self.beyond2,
+        }
     }
 
     /// The surface between two cells is crossed on their common boundary.

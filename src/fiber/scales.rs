@@ -8,8 +8,10 @@
 //! `z = end(u)`; where the next strip's surface is lower or higher the difference is a riser, an
 //! exact wall.
 
+mod seek;
+
 use super::pattern::Pattern;
-use super::section::{Line, Section, floor};
+use super::section::{Line, Section};
 use glam::DVec3;
 
 /// One strip of one sector: values on the two half planes. One cache line.
@@ -34,6 +36,26 @@ impl Strip {
         let e1 = self.height[1] + self.slope[1] * z;
         e0 + u * (e1 - e0)
     }
+
+    /// Whether a straight way from `z0` to `z1` in the strip's sector keeps clear of its ends.
+    #[inline]
+    pub(super) fn holds(&self, z0: f64, z1: f64) -> bool {
+        let low = larger(self.begin[0], self.begin[1]);
+        let high = smaller(self.end[0], self.end[1]);
+        smaller(z0, z1) > low && larger(z0, z1) < high
+    }
+}
+
+/// The smaller one in one instruction, as neither is NaN.
+#[inline]
+pub(super) fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger one.
+#[inline]
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// A half plane from the axis.
@@ -52,6 +74,13 @@ pub(super) struct Sector {
     count: u32,
 }
 
+impl Sector {
+    /// Its strips of all of them.
+    fn stack<'a>(&self, strips: &'a [Strip]) -> &'a [Strip] {
+        &strips[self.first as usize..][..self.count as usize]
+    }
+}
+
 /// A cell and the whole periods between its own z and the ray's.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
@@ -67,6 +96,11 @@ pub(super) struct Scales {
     inverse_period: f64,
     pub(super) sectors: Vec<Sector>,
     strips: Vec<Strip>,
+    /// For each strip the one of the previous and of the next sector that goes on beyond their common
+    /// half plane: the same tile's, as a rule.
+    beside: Vec<[u16; 2]>,
+    /// Strip at the middle of each step of z, sector by sector.
+    strip_at: Vec<u16>,
     /// Nothing changes along z: a section of any shape without scales.
     pub(super) bare: bool,
     /// Sector that holds the start of each step of the pseudo-angle.
@@ -74,10 +108,14 @@ pub(super) struct Scales {
     /// Radii that enclose the surface, with a margin above rounding.
     pub(super) rho_min: f64,
     pub(super) rho_max: f64,
+    /// Squares of radii a little within these, which still enclose the surface: what ends at one of
+    /// these circles is past them.
+    pub(super) within2: f64,
+    pub(super) beyond2: f64,
 }
 
-/// Entries of the pseudo-angle table: a few per sector.
-const ANGLE_STEPS: usize = 1024;
+/// How far above rounding the enclosing radii keep from the surface.
+const MARGIN: f64 = 1e-9;
 
 impl Scales {
     /// Joins the lines of a pattern.
@@ -96,17 +134,6 @@ impl Scales {
                 count: (strips.len() - first) as u32,
             });
         }
-        let mut start_of_angle = Vec::with_capacity(ANGLE_STEPS);
-        let mut sector = 0;
-        for step in 0..ANGLE_STEPS {
-            let angle = 4.0 * step as f64 / ANGLE_STEPS as f64;
-            while sector + 1 < lines.len()
-                && pseudo_angle(lines[sector + 1].cos, lines[sector + 1].sin) <= angle
-            {
-                sector += 1;
-            }
-            start_of_angle.push(sector as u16);
-        }
         let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
         for s in &strips {
             for side in 0..2 {
@@ -119,16 +146,22 @@ impl Scales {
                 }
             }
         }
-        let margin = 0.02 * (highest - lowest) + 1e-9;
+        let margin = 0.02 * (highest - lowest) + MARGIN;
+        let stacks = sectors.iter().map(|s| s.stack(&strips));
+        let stacks: Vec<&[Strip]> = stacks.collect();
         Self {
+            beside: seek::beside(&stacks),
+            strip_at: seek::strips_at(&stacks, pattern.period_um),
             period: pattern.period_um,
             inverse_period: 1.0 / pattern.period_um,
             bare: strips.len() == sectors.len() && strips.iter().all(|s| s.slope == [0.0; 2]),
             sectors,
             strips,
-            start_of_angle,
+            start_of_angle: seek::starts_of_angles(lines),
             rho_min: 1.0 + lowest - margin,
             rho_max: 1.0 + highest + margin,
+            within2: (1.0 + lowest - margin + 0.5 * MARGIN).powi(2),
+            beyond2: (1.0 + highest + margin - 0.5 * MARGIN).powi(2),
         }
     }
 
@@ -137,7 +170,7 @@ impl Scales {
     /// * `semi`: semi-axes of the frame.
     pub(super) fn bounding_um(&self, semi: [f64; 2]) -> f64 {
         let highest = |sector: &Sector| {
-            let strips = &self.strips[sector.first as usize..][..sector.count as usize];
+            let strips = sector.stack(&self.strips);
             let ends = |s: &Strip, side: usize| {
                 let at = |z: f64| s.height[side] + s.slope[side] * z;
                 at(s.begin[side]).max(at(s.end[side]))
@@ -165,98 +198,6 @@ impl Scales {
     #[inline]
     pub(super) fn count(&self, sector: usize) -> usize {
         self.sectors[sector].count as usize
-    }
-
-    /// The cell above.
-    #[inline]
-    pub(super) fn above(&self, mut cell: Cell) -> Cell {
-        if cell.strip + 1 == self.count(cell.sector) {
-            cell.strip = 0;
-            cell.shift += self.period;
-        } else {
-            cell.strip += 1;
-        }
-        cell
-    }
-
-    /// The cell below.
-    #[inline]
-    pub(super) fn below(&self, mut cell: Cell) -> Cell {
-        if cell.strip == 0 {
-            cell.strip = self.count(cell.sector) - 1;
-            cell.shift -= self.period;
-        } else {
-            cell.strip -= 1;
-        }
-        cell
-    }
-
-    /// Index of the half plane that ends a sector.
-    #[inline]
-    pub(super) fn next_sector(&self, sector: usize) -> usize {
-        if sector + 1 == self.sectors.len() {
-            0
-        } else {
-            sector + 1
-        }
-    }
-
-    /// The sector before.
-    #[inline]
-    pub(super) fn previous_sector(&self, sector: usize) -> usize {
-        if sector == 0 {
-            self.sectors.len() - 1
-        } else {
-            sector - 1
-        }
-    }
-
-    /// The cell that holds a point of the unit-circle frame.
-    #[inline]
-    pub(super) fn locate(&self, p: DVec3) -> Cell {
-        let angle = pseudo_angle(p.x, p.y) * (ANGLE_STEPS as f64 / 4.0);
-        let mut sector = usize::from(self.start_of_angle[(angle as usize).min(ANGLE_STEPS - 1)]);
-        // The table gives the sector at the start of the step; the next may begin within it.
-        loop {
-            let [_, end] = self.sectors[sector].planes;
-            let beyond = distance(end, p.x, p.y) >= 0.0 && end.cos * p.x + end.sin * p.y > 0.0;
-            if !beyond || sector + 1 == self.sectors.len() {
-                break;
-            }
-            sector += 1;
-        }
-        let shift = self.period * floor(p.z * self.inverse_period);
-        let n = self.count(sector);
-        let strip = ((p.z - shift) * self.inverse_period * n as f64) as usize;
-        let near = Cell {
-            sector,
-            strip: strip.min(n - 1),
-            shift,
-        };
-        self.settle(near, self.across(sector, p.x, p.y), p.z)
-    }
-
-    /// Position of a point between the half planes of a sector, 0..1.
-    #[inline]
-    pub(super) fn across(&self, sector: usize, x: f64, y: f64) -> f64 {
-        let [begin, end] = self.sectors[sector].planes;
-        let a = distance(begin, x, y);
-        a / (a - distance(end, x, y))
-    }
-
-    /// Walks from a near strip of the right sector to the one that holds `z` at `u`.
-    #[inline]
-    pub(super) fn settle(&self, mut cell: Cell, u: f64, z: f64) -> Cell {
-        if self.bare {
-            return cell;
-        }
-        while z - cell.shift > at(self.strip(cell).end, u) {
-            cell = self.above(cell);
-        }
-        while z - cell.shift <= at(self.strip(cell).begin, u) {
-            cell = self.below(cell);
-        }
-        cell
     }
 
     /// `1 + E` of a cell at `u` and the ray's `z`.
@@ -322,16 +263,6 @@ pub(super) fn at(ends: [f64; 2], u: f64) -> f64 {
 #[inline]
 pub(super) fn distance(plane: Plane, x: f64, y: f64) -> f64 {
     plane.cos * y - plane.sin * x
-}
-
-/// Monotone in the angle of a vector, 0..4, without trigonometry.
-fn pseudo_angle(x: f64, y: f64) -> f64 {
-    let r = y / (x.abs() + y.abs());
-    match (x >= 0.0, y >= 0.0) {
-        (true, true) => r,
-        (false, _) => 2.0 - r,
-        (true, false) => 4.0 + r,
-    }
 }
 
 /// Appends the strips of sector `i`: the union of what shows on its two lines, in rank order. A tile

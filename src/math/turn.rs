@@ -5,7 +5,7 @@
 //! these do not.
 
 use glam::DVec2;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Unit vector at `turn` of a whole turn from x toward y; `turn` in `[0, 1]`.
 ///
@@ -28,6 +28,50 @@ pub fn unit_vector(turn: f64) -> DVec2 {
     } else {
         DVec2::new(-c, -s)
     }
+}
+
+/// Unit vector at `bits` / 2^32 of a whole turn from x toward y, good to 1e-11: for random azimuths.
+///
+/// The high bits look up a direction, which the low bits turn a little further.
+#[inline]
+pub fn unit_vector_of(bits: u32) -> DVec2 {
+    let DVec2 { x, y } = DIRECTIONS[(bits >> 24) as usize];
+    // Less than an eightieth of a radian.
+    let angle = f64::from((bits & 0x00ff_ffff) as i32 - 0x0080_0000) * (TAU / 4_294_967_296.0);
+    let a2 = angle * angle;
+    let (sin, cos) = (
+        angle - angle * a2 * (1.0 / 6.0),
+        1.0 - a2 * (0.5 - a2 * (1.0 / 24.0)),
+    );
+    DVec2::new(x * cos - y * sin, x * sin + y * cos)
+}
+
+/// Directions in the middle of 256 equal sectors.
+static DIRECTIONS: [DVec2; 256] = directions();
+
+const fn directions() -> [DVec2; 256] {
+    let (mut all, mut i) = ([DVec2::ZERO; 256], 0);
+    while i < 64 {
+        let angle = (i as f64 + 0.5) * (TAU / 256.0);
+        // Taylor series of both, to the last bit within a quarter of a turn.
+        let (mut sin, mut cos, mut term, mut n) = (0.0, 0.0, 1.0, 0);
+        while n < 28 {
+            let signed = if n & 2 == 0 { term } else { -term };
+            if n & 1 == 0 {
+                cos += signed;
+            } else {
+                sin += signed;
+            }
+            n += 1;
+            term *= angle / n as f64;
+        }
+        all[i] = DVec2::new(cos, sin);
+        all[i + 64] = DVec2::new(-sin, cos);
+        all[i + 128] = DVec2::new(-cos, -sin);
+        all[i + 192] = DVec2::new(sin, -cos);
+        i += 1;
+    }
+    all
 }
 
 /// Inverse factorials of 3, 5, ... 15 and of 2, 4, ... 16.
@@ -56,7 +100,6 @@ fn series<const N: usize>(x2: f64, coefficients: [f64; N]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::TAU;
 
     #[test]
     fn agrees_with_the_library() {
@@ -70,5 +113,15 @@ mod tests {
         }
         assert_eq!(unit_vector(0.25), DVec2::Y);
         assert_eq!(unit_vector(0.5), DVec2::NEG_X);
+    }
+
+    #[test]
+    fn random_azimuths_are_those_of_their_bits() {
+        for i in 0..100_000u32 {
+            let bits = i.wrapping_mul(0x9e37_79b9);
+            let (sin, cos) = (TAU * f64::from(bits) / 4_294_967_296.0).sin_cos();
+            let off = (unit_vector_of(bits) - DVec2::new(cos, sin)).length();
+            assert!(off < 1e-11, "{bits}: {off:e}");
+        }
     }
 }

@@ -35,8 +35,15 @@ impl Block {
 
     #[inline]
     pub(super) fn normal(&self, lane: usize) -> DVec3 {
-        Vec3::new(self.x[lane], self.y[lane], self.z[lane]).as_dvec3()
+        let [x, y, z] = [&self.x, &self.y, &self.z].map(|v| lane_of(v, lane));
+        DVec3::new(x, y, z)
     }
+}
+
+/// One of four numbers: by address, as an index of a vector is a jump by cases.
+#[inline]
+pub(super) fn lane_of(v: &Vec4, lane: usize) -> f64 {
+    f64::from(v.as_ref()[lane])
 }
 
 /// The least value of each lane, and the block that had it.

@@ -1,6 +1,6 @@
 //! Rays from cell to cell.
 
-use super::faces::{Block, Least};
+use super::faces::{Block, Least, lane_of};
 use super::{Cells, Kind, MOST_CELLS, NOTHING, OUTLINE, Room};
 use glam::{DVec3, Vec3, Vec4};
 
@@ -163,8 +163,8 @@ impl Cells {
         }
         let (block, lane) = (&self.blocks[slot / 4], slot % 4);
         let normal = block.normal(lane);
-        let offset = if cell { block.cell } else { block.void }[lane];
-        let way = (f64::from(offset) - normal.dot(at)) / normal.dot(dir);
+        let offset = lane_of(if cell { &block.cell } else { &block.void }, lane);
+        let way = (offset - normal.dot(at)) / normal.dot(dir);
         way.min(f64::from(about) + SLACK_UM).max(0.0)
     }
 }

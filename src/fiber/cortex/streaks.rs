@@ -62,6 +62,7 @@ impl Streaks {
     }
 
     /// Visits the cells along a ray: density, begin and end.
+    #[inline]
     pub(super) fn walk(
         &self,
         ray: &UnitRay,
@@ -71,20 +72,29 @@ impl Streaks {
     ) {
         let rate = [ray.dx * self.scale[0], ray.dy * self.scale[1]];
         let at = [ray.x * self.scale[0], ray.y * self.scale[1]];
-        let mut columns = [0, 1].map(|k| Axis::new(at[k], rate[k], t0, self.size[k]));
-        let axial = Axial::new(self, ray);
+        let [mut x, mut y] = [0, 1].map(|k| Axis::new(at[k], rate[k], t0, self.size[k]));
+        let axial = Axial::new(self, ray, t0, t1);
         let mut t = t0;
         while t < t1 {
-            let axis = usize::from(columns[1].next < columns[0].next);
-            let end = columns[axis].next.min(t1);
+            let column = y.index() * self.size[0] + x.index();
+            let end = smaller(smaller(x.next, y.next), t1);
             if end > t {
-                let column = columns[1].index() * self.size[0] + columns[0].index();
                 axial.walk(column as usize, t, end, &mut visit);
                 t = end;
             }
-            columns[axis].advance();
+            if x.next <= y.next {
+                x.advance();
+            } else {
+                y.advance();
+            }
         }
     }
+}
+
+/// The smaller one, as neither is NaN.
+#[inline]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 /// A ray's way through the columns along one axis.
@@ -129,7 +139,8 @@ impl Axis {
     }
 }
 
-/// A ray's height in cells: `z + t dz`.
+/// A ray's height in cells: `z + t dz`, never negative where it is asked for, so that the number of
+/// the cell is the whole part.
 struct Axial<'a> {
     streaks: &'a Streaks,
     z: f64,
@@ -138,29 +149,42 @@ struct Axial<'a> {
 
 impl<'a> Axial<'a> {
     #[inline]
-    fn new(streaks: &'a Streaks, ray: &UnitRay) -> Self {
+    fn new(streaks: &'a Streaks, ray: &UnitRay, t0: f64, t1: f64) -> Self {
         let (z, count) = (ray.z * streaks.per_um, f64::from(streaks.count));
+        let dz = ray.dz * streaks.per_um;
+        // The lowest place in the first period, where most of the way then is.
+        let lowest = z + smaller(t0 * dz, t1 * dz);
         Self {
             streaks,
-            // Within the first period, where most of the way then is.
-            z: z - count * floor(z / count),
-            dz: ray.dz * streaks.per_um,
+            z: z - count * floor(lowest / count),
+            dz,
         }
     }
 
     #[inline]
     fn walk(&self, column: usize, t0: f64, t1: f64, visit: &mut impl FnMut(f64, f64, f64)) {
+        // Rounding may leave it a little below 0, which truncation takes for 0.
         let z = self.z + f64::from(self.streaks.phases[column]);
-        let (mut k, last) = (floor(z + t0 * self.dz), floor(z + t1 * self.dz));
-        let mut t = t0;
-        // Rarely more than one cell: columns are slender.
+        let (k, last) = ((z + t0 * self.dz) as i32, (z + t1 * self.dz) as i32);
+        if k == last {
+            visit(self.density(column, k), t0, t1);
+        } else {
+            self.climb(column, (k, last), (t0, t1), visit);
+        }
+    }
+
+    /// More than one cell of a column, which is rare: columns are slender.
+    fn climb(
+        &self,
+        column: usize,
+        (mut k, last): (i32, i32),
+        (mut t, t1): (f64, f64),
+        visit: &mut impl FnMut(f64, f64, f64),
+    ) {
+        let z = self.z + f64::from(self.streaks.phases[column]);
         while k != last {
-            let (edge, next) = if last > k {
-                (k + 1.0, k + 1.0)
-            } else {
-                (k, k - 1.0)
-            };
-            let end = ((edge - z) / self.dz).clamp(t, t1);
+            let (edge, next) = if last > k { (k + 1, k + 1) } else { (k, k - 1) };
+            let end = ((f64::from(edge) - z) / self.dz).clamp(t, t1);
             visit(self.density(column, k), t, end);
             (t, k) = (end, next);
         }
@@ -168,10 +192,10 @@ impl<'a> Axial<'a> {
     }
 
     #[inline]
-    fn density(&self, column: usize, k: f64) -> f64 {
-        let (mut k, count) = (k as i32, self.streaks.count);
-        if k < 0 || k >= count {
-            k = k.rem_euclid(count);
+    fn density(&self, column: usize, mut k: i32) -> f64 {
+        let count = self.streaks.count;
+        if k >= count {
+            k %= count;
         }
         f64::from(self.streaks.densities[column * count as usize + k as usize])
     }

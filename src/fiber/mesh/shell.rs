@@ -29,7 +29,7 @@ pub(super) fn tessellate(scales: &Scales, round: usize) -> [Weld; 2] {
         for pair in columns.windows(2) {
             let lines = [
                 (pair[0] == 0.0).then(|| &stops[sector]),
-                (pair[1] == 1.0).then(|| &stops[scales.next_sector(sector)]),
+                (pair[1] == 1.0).then(|| &stops[scales.neighbor(sector, 1)]),
             ];
             column(scales, sector, [pair[0], pair[1]], lines, &mut parts);
         }
@@ -189,7 +189,7 @@ struct Stops {
 impl Stops {
     fn new(scales: &Scales, line: usize) -> Self {
         let mut points = Vec::new();
-        for (sector, u) in [(line, 0.0), (scales.previous_sector(line), 1.0)] {
+        for (sector, u) in [(line, 0.0), (scales.neighbor(line, 0), 1.0)] {
             for strip in 0..scales.count(sector) {
                 for end in ends(scales, sector, strip, u) {
                     let z = end.z.rem_euclid(scales.period);
