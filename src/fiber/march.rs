@@ -6,7 +6,7 @@
 //! sides agree may a grazing pair of crossings hide, and the parabola through both ends tells.
 
 use super::crossing::{Crossing, Quadratic};
-use super::scales::{Cell, Plane, Scales, Strip, distance, larger, smaller};
+use super::scales::{Cell, Plane, Scales, Strip, distance, larger};
 use super::section::UnitRay;
 use glam::DVec3;
 

@@ -48,7 +48,7 @@ impl Strip {
 
 /// The smaller one in one instruction, as neither is NaN.
 #[inline]
-pub(super) fn smaller(a: f64, b: f64) -> f64 {
+fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
