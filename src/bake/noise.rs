@@ -4,6 +4,7 @@ use super::reconstruct::Reconstruction;
 use super::tally::Tally;
 use crate::math::unicube::Unicube;
 use crate::table::Nodes;
+use rayon::prelude::*;
 
 /// Inclinations beyond this are left out of the estimate, of queries and of exits: toward the axis S
 /// divides by a vanishing cosine, and a handful of photons there would outweigh all others.
@@ -48,23 +49,36 @@ impl Norm {
         self.weights[texel]
     }
 
-    /// Noise of one node at the clear level.
+    /// Noise of the nodes of one channel at the clear level.
     ///
     /// * `filter`: what takes noise off the maps, if anything does.
-    pub(super) fn of(
+    pub(super) fn of_nodes(
         &self,
         cube: &Unicube,
         nodes: &Nodes,
-        node: usize,
-        tally: &Tally,
+        tallies: &[Tally],
         filter: Option<&Reconstruction>,
-    ) -> Noise {
-        if nodes.centers[node].abs() > LIMIT_DEG.to_radians() || tally.is_empty() {
-            return Noise::default();
+    ) -> Vec<Noise> {
+        let limit = LIMIT_DEG.to_radians();
+        let counts: Vec<bool> = nodes.centers.iter().map(|c| c.abs() <= limit).collect();
+        let mut noise = match filter {
+            _ if tallies.iter().any(Tally::is_empty) => vec![Noise::default(); nodes.len()],
+            Some(filter) => filter.noise(tallies, self, &counts),
+            None => {
+                let tallies = tallies.par_iter();
+                tallies.map(|tally| self.of_sums(cube, tally)).collect()
+            }
+        };
+        for (noise, counts) in noise.iter_mut().zip(counts) {
+            if !counts {
+                *noise = Noise::default();
+            }
         }
-        if let Some(filter) = filter {
-            return filter.noise(tally, self);
-        }
+        noise
+    }
+
+    /// Noise of the plain means of one node.
+    fn of_sums(&self, cube: &Unicube, tally: &Tally) -> Noise {
         let mut sum = Noise::default();
         for (texel, &weight) in self.weights.iter().enumerate() {
             if weight == 0.0 {

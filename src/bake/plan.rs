@@ -50,7 +50,7 @@ impl Plan {
     /// What takes noise off the maps of a table.
     pub(super) fn filter(&self, cube: &Unicube) -> Option<Reconstruction> {
         let wanted = self.settings.reconstruct;
-        wanted.then(|| Reconstruction::new(cube, self.folded))
+        wanted.then(|| Reconstruction::new(cube, &self.nodes(), self.folded))
     }
 
     /// An empty sum of one node.
@@ -107,22 +107,28 @@ impl Plan {
         }
     }
 
-    /// Fluxes, errors and the books of one node.
+    /// Fluxes, errors and the books of the nodes of one channel.
     pub(super) fn maps(
         &self,
-        tally: &Tally,
+        tallies: &[Tally],
         filter: Option<&Reconstruction>,
-    ) -> (Vec<f32>, Vec<f32>, Vec<Ledger>) {
+    ) -> Vec<(Vec<f32>, Vec<f32>, Vec<Ledger>)> {
         if let Some(filter) = filter {
-            let maps = filter.maps(tally);
-            return (maps.flux, maps.error, tally.ledger());
+            let maps = filter.maps(tallies).into_iter().zip(tallies);
+            return maps
+                .map(|(maps, tally)| (maps.flux, maps.error, tally.ledger()))
+                .collect();
         }
         // One map at a time and thread is copied, to be folded.
-        let mut tally = tally.clone();
-        if self.folded {
-            tally.fold(&Unicube::new(self.settings.face));
-        }
-        (tally.flux(), tally.error(), tally.ledger())
+        let cube = Unicube::new(self.settings.face);
+        let maps = tallies.par_iter().with_max_len(1).map(|tally| {
+            let mut tally = tally.clone();
+            if self.folded {
+                tally.fold(&cube);
+            }
+            (tally.flux(), tally.error(), tally.ledger())
+        });
+        maps.collect()
     }
 
     fn table(
@@ -133,11 +139,7 @@ impl Plan {
         photons: u64,
         provenance: &Provenance,
     ) -> StructureTable {
-        let maps: Vec<_> = tallies
-            .par_iter()
-            .with_max_len(1)
-            .map(|tally| self.maps(tally, filter))
-            .collect();
+        let maps = self.maps(tallies, filter);
         let texels = 6 * self.settings.face * self.settings.face * tallies.len();
         let mut table = StructureTable {
             nodes: self.nodes(),

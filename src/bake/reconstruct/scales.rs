@@ -31,7 +31,8 @@ pub(super) struct Scales {
 
 impl Scales {
     /// * `folded`: maps are even in azimuth and only one half is kept.
-    pub(super) fn new(cube: &Unicube, folded: bool) -> Self {
+    /// * `most`: scales along each axis at most.
+    pub(super) fn new(cube: &Unicube, folded: bool, most: usize) -> Self {
         let mut cells = vec![0u32; cube.texels()];
         let mut texels = Vec::new();
         for texel in 0..cube.texels() {
@@ -62,10 +63,10 @@ impl Scales {
             texels.map(|&[t, _]| OFFSETS.map(|o| tap(t, o))).collect()
         };
         Self {
-            theta: (0..depth.saturating_sub(2))
+            theta: (0..depth.saturating_sub(2).min(most))
                 .map(|s| taps(s, true))
                 .collect(),
-            phi: (0..depth.saturating_sub(1))
+            phi: (0..depth.saturating_sub(1).min(most))
                 .map(|s| taps(s, false))
                 .collect(),
             texels,
@@ -122,7 +123,12 @@ impl Scales {
         let mut out = maps.clone();
         // Twice as wide as the taps that made the band.
         let wider = |all: &[Taps], scale: usize| (scale + 1).min(all.len().saturating_sub(1));
-        for (all, scale) in [(&self.theta, theta), (&self.phi, phi)] {
+        for (all, scale) in [
+            (&self.theta, theta),
+            (&self.phi, phi),
+            (&self.theta, theta + 1),
+            (&self.phi, phi + 1),
+        ] {
             if let Some(taps) = all.get(wider(all, scale)) {
                 blur(taps, &maps, &mut out);
                 std::mem::swap(&mut maps, &mut out);
@@ -169,7 +175,7 @@ mod tests {
     fn bands_sum_to_the_map_and_a_constant_has_only_the_last() {
         let cube = Unicube::new(16);
         for folded in [false, true] {
-            let scales = Scales::new(&cube, folded);
+            let scales = Scales::new(&cube, folded, usize::MAX);
             let mut rng = Rng::new(1, 2);
             let map: Vec<[f32; 2]> = scales
                 .texels

@@ -1,0 +1,266 @@
+//! S of all nodes on one lattice.
+//!
+//! With inclinations `q` of the query and `o` of an exit, `x = q + o` measures from the specular cone
+//! and `y = (q - o) / 2` runs along it. In the cone frame the texel of a node at inclination `t` holds
+//! light of `x = center + t`, whatever its query was within the bin. Lobes are narrow along x and change
+//! slowly along y and azimuth, so that nodes can help each other. And S is reciprocal: S(q, o, phi)
+//! = S(o, q, -phi), which is y -> -y. A photon from `q` to `o` tells as much of light from `o` to `q`;
+//! of grazing exits, where the cosine lets few photons out, most of what is known comes so.
+//!
+//! Fibers of one's choice need not be mirror images of themselves, nor are those of elliptic section
+//! reciprocal when all sides are seen alike: what is read off the lattice is a first guess, and what
+//! photons say against it is put right per node.
+
+use super::field::{Field, Plane};
+use crate::math::frame;
+use crate::math::unicube::Unicube;
+use crate::table::Nodes;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Finest lattice along x and azimuth: one cell a texel of a face with 64.
+const FINEST: usize = 64;
+/// Points of a texel along each side that are placed on the lattice.
+const SIDE: usize = 3;
+/// Steps of the integrals over a bin.
+const STEPS: usize = 32;
+
+/// A point of a texel: inclination and azimuth in cells, and `1 / (cos(inclination) points)`.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    theta: f32,
+    phi: f32,
+    weight: f32,
+}
+
+/// Which photons of which node tell of which cells.
+#[derive(Debug)]
+pub(super) struct Lattice {
+    size: [usize; 3],
+    /// Where inclination 0 of a node lies along x, in cells.
+    zeros: Vec<f32>,
+    /// `[node * nx + x]`: integral over the bin, with the density of queries, of `cos^2 o`.
+    mass: Vec<f32>,
+    /// Where the shares of `[node * nx + x]` begin.
+    starts: Vec<usize>,
+    /// Cells along y and their shares of that integral.
+    shares: Vec<(usize, f32)>,
+    /// Of every cell of a map.
+    points: Vec<[Point; SIDE * SIDE]>,
+    /// Texels of a map that are one cell, over those that fall on one place of the lattice.
+    sides: f64,
+}
+
+impl Lattice {
+    /// * `texels`: the texel of every cell of a map.
+    /// * `folded`: a cell is a texel and its mirror image.
+    pub(super) fn new(cube: &Unicube, nodes: &Nodes, texels: &[[usize; 2]], folded: bool) -> Self {
+        let face = cube.res().min(FINEST);
+        let ny = if nodes.len() < 24 { 12 } else { 24 };
+        let size = [4 * face, ny, face];
+        let (mut mass, mut starts, mut shares) = (Vec::new(), vec![0], Vec::new());
+        for bin in nodes.edges.windows(2) {
+            for x in 0..size[0] {
+                let x = 2.0 * PI * (x as f64 + 0.5) / size[0] as f64 - PI;
+                let mut cells = vec![0.0; ny];
+                for step in 0..STEPS {
+                    let along = (step as f64 + 0.5) / STEPS as f64;
+                    let query = bin[0] + (bin[1] - bin[0]) * along;
+                    if (x - query).abs() < FRAC_PI_2 {
+                        let y = (query - 0.5 * x).abs() / FRAC_PI_2 * ny as f64;
+                        cells[(y as usize).min(ny - 1)] += query.cos() * (x - query).cos().powi(2);
+                    }
+                }
+                let sum: f64 = cells.iter().sum();
+                let density = (bin[1] - bin[0]) / (bin[1].sin() - bin[0].sin()) / STEPS as f64;
+                mass.push((sum * density) as f32);
+                let met = cells.iter().enumerate().filter(|(_, c)| **c > 0.0);
+                shares.extend(met.map(|(y, c)| (y, (c / sum) as f32)));
+                starts.push(shares.len());
+            }
+        }
+        let cells = size[0] as f64 / (2.0 * PI);
+        let point = |texel: usize, i: usize| {
+            let at = |i: usize| (i as f64 + 0.5) / SIDE as f64;
+            let (w, _) = cube.direction(texel, at(i % SIDE), at(i / SIDE));
+            let cos = w.x.hypot(w.y).max(1e-6);
+            Point {
+                theta: (frame::theta_of(w) * cells) as f32,
+                phi: (w.y.atan2(w.x).abs() / PI * size[2] as f64) as f32,
+                weight: (1.0 / cos / (SIDE * SIDE) as f64) as f32,
+            }
+        };
+        Self {
+            size,
+            zeros: nodes
+                .centers
+                .iter()
+                .map(|c| ((c + PI) * cells) as f32)
+                .collect(),
+            mass,
+            starts,
+            shares,
+            points: texels
+                .iter()
+                .map(|&[texel, _]| std::array::from_fn(|i| point(texel, i)))
+                .collect(),
+            sides: if folded { 1.0 } else { 2.0 },
+        }
+    }
+
+    /// Cells along x, y and azimuth.
+    pub(super) fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    /// Photons that reach a cell if S is 1, `[x][y]`.
+    ///
+    /// * `photons`: of every node.
+    pub(super) fn exposure(&self, photons: &[f64]) -> Plane {
+        let [nx, ny, np] = self.size;
+        let mut plane = Plane::new(nx, ny);
+        let cell = self.sides * 2.0 * PI / nx as f64 * PI / np as f64;
+        for (node, photons) in photons.iter().enumerate() {
+            for x in 0..nx {
+                let scale = (photons * cell) as f32 * self.mass[node * nx + x];
+                for &(y, share) in self.shares(node, x) {
+                    plane.values[x * ny + y] += scale * share;
+                }
+            }
+        }
+        plane
+    }
+
+    fn shares(&self, node: usize, x: usize) -> &[(usize, f32)] {
+        let at = node * self.size[0] + x;
+        &self.shares[self.starts[at]..self.starts[at + 1]]
+    }
+
+    fn x_of(&self, node: usize, point: &Point) -> usize {
+        ((self.zeros[node] + point.theta) as usize).min(self.size[0] - 1)
+    }
+
+    /// Adds the photons of a node to the cells that they tell of.
+    ///
+    /// * `counts`: photons of every cell of the map, from its density.
+    pub(super) fn gather<const N: usize>(
+        &self,
+        node: usize,
+        counts: impl Iterator<Item = [f32; N]>,
+        into: &mut Field<N>,
+    ) {
+        let [_, ny, np] = self.size;
+        let all = counts.zip(&self.points);
+        for (count, points) in all.filter(|(count, _)| *count != [0.0; N]) {
+            let part = count.map(|v| v / (SIDE * SIDE) as f32);
+            for point in points {
+                let x = self.x_of(node, point);
+                let phi = (point.phi as usize).min(np - 1);
+                for &(y, share) in self.shares(node, x) {
+                    let cell = &mut into.values[(x * ny + y) * np + phi];
+                    for (cell, part) in cell.iter_mut().zip(part) {
+                        *cell += share * part;
+                    }
+                }
+            }
+        }
+    }
+
+    /// The densities that a node sees of S.
+    pub(super) fn project<const N: usize>(&self, node: usize, s: &Field<N>) -> Vec<[f32; N]> {
+        let [nx, ny, np] = self.size;
+        let mut seen = vec![[0.0; N]; nx * np];
+        for (x, row) in seen.chunks_exact_mut(np).enumerate() {
+            for &(y, share) in self.shares(node, x) {
+                let weight = share * self.mass[node * nx + x];
+                let from = &s.values[(x * ny + y) * np..][..np];
+                for (to, from) in row.iter_mut().zip(from) {
+                    for (to, from) in to.iter_mut().zip(from) {
+                        *to += weight * from;
+                    }
+                }
+            }
+        }
+        let density = |points: &[Point; SIDE * SIDE]| {
+            let mut sum = [0.0; N];
+            for point in points {
+                let row = &seen[self.x_of(node, point) * np..][..np];
+                // Between the centers of cells, even at both ends.
+                let at = (point.phi - 0.5).clamp(0.0, (np - 1) as f32);
+                let low = (at as usize).min(np - 2);
+                let high = at - low as f32;
+                for ((sum, a), b) in sum.iter_mut().zip(row[low]).zip(row[low + 1]) {
+                    *sum += point.weight * (a + high * (b - a));
+                }
+            }
+            sum
+        };
+        self.points.iter().map(density).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::Mode;
+
+    /// A smooth reciprocal S is found again from what it lets photons of all nodes do, and the nodes
+    /// see what they did.
+    #[test]
+    fn counts_of_s_give_s_and_s_gives_densities() {
+        let cube = Unicube::new(32);
+        let nodes = Nodes::new(Mode::Cone, 16);
+        let texels: Vec<[usize; 2]> = (0..cube.texels())
+            .map(|t| [t, cube.mirrored(t)])
+            .filter(|[t, mirror]| t < mirror)
+            .collect();
+        let lattice = Lattice::new(&cube, &nodes, &texels, true);
+        let s_of = |q: f64, o: f64, phi: f64| {
+            let along = 0.5 * (q - o);
+            0.1 + (-6.0 * (q + o).powi(2)).exp() * (1.5 + phi.cos()) * (0.5 + 2.0 * along * along)
+        };
+        // The mean density of a texel over the queries of its bin, by points.
+        let density = |node: usize, texel: usize| {
+            let (lo, hi) = (nodes.edges[node], nodes.edges[node + 1]);
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for i in 0..8 {
+                let query = lo + (hi - lo) * (f64::from(i) + 0.5) / 8.0;
+                weights += query.cos();
+                for j in 0..9 {
+                    let at = |i: i32| (f64::from(i) + 0.5) / 3.0;
+                    let (w, _) = cube.direction(texel, at(j % 3), at(j / 3));
+                    let theta = frame::theta_of(w);
+                    let exit = theta + nodes.centers[node] - query;
+                    if exit.abs() < FRAC_PI_2 {
+                        let s = s_of(query, exit, w.y.atan2(w.x));
+                        sum += query.cos() * s * exit.cos().powi(2) / theta.cos() / 9.0;
+                    }
+                }
+            }
+            sum / weights
+        };
+        let photons = vec![1000.0; nodes.len()];
+        let mut sums: Field<1> = Field::new(lattice.size());
+        for node in 0..nodes.len() {
+            let counts = texels.iter().map(|&[texel, _]| {
+                [(density(node, texel) * cube.solid_angle(texel) * photons[node]) as f32]
+            });
+            lattice.gather(node, counts, &mut sums);
+        }
+        sums.divide(&lattice.exposure(&photons));
+        for node in 4..12 {
+            let seen = lattice.project(node, &sums);
+            let (mut off, mut all) = (0.0, 0.0);
+            for (&[texel, _], seen) in texels.iter().zip(seen) {
+                let (w, _) = cube.direction(texel, 0.5, 0.5);
+                if frame::theta_of(w).abs() < 1.2 {
+                    let density = density(node, texel);
+                    off += (f64::from(seen[0]) - density).powi(2);
+                    all += density * density;
+                }
+            }
+            let off = (off / all).sqrt();
+            // Cells of the lattice are as large as texels; a lost factor or a wrong sign is far more.
+            assert!(off < 0.08, "{node}: {off}");
+        }
+    }
+}
