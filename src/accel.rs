@@ -7,8 +7,10 @@
 
 use crate::sampling::hash64;
 use glam::{UVec2, Vec3, Vec3A};
+use obvhs::bvh2::builder::build_bvh2_from_tris;
 use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
 use obvhs::ray::Ray as BoxRay;
+use obvhs::triangle::Triangle;
 use obvhs::{Boundable, BvhBuildParams, aabb::Aabb};
 use std::time::Duration;
 
@@ -56,13 +58,7 @@ impl Accel {
     /// * `boxes`: corners of each primitive's box.
     /// * Fails on non-finite or huge coordinates and on too many primitives in one place.
     pub(crate) fn build(boxes: &[(Vec3, Vec3)]) -> Result<Self, AccelError> {
-        for (lo, hi) in boxes {
-            let reach = lo.abs().max(hi.abs()).max_element();
-            if !(lo.is_finite() && hi.is_finite()) || reach > LIMIT {
-                return Err(AccelError::Coordinates { at: *lo });
-            }
-        }
-        refuse_crowds(boxes)?;
+        check(boxes)?;
         if boxes.is_empty() {
             return Ok(Self {
                 bvh: CwBvh::default(),
@@ -159,11 +155,69 @@ impl Accel {
     }
 }
 
+/// A node of [`binary_tree`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BinaryNode {
+    /// Corners of its box.
+    pub(crate) lo: Vec3,
+    pub(crate) hi: Vec3,
+    /// The triangle of a leaf, or the first of two children one after the other.
+    pub(crate) index: u32,
+    pub(crate) is_leaf: bool,
+}
+
+/// A hierarchy over triangles for layouts of one's own: the best that the crate builds, a triangle a
+/// leaf, slender ones in several. The first node is the root; empty without triangles.
+///
+/// * Fails as [`Accel::build`].
+pub(crate) fn binary_tree(triangles: &[[Vec3; 3]]) -> Result<Vec<BinaryNode>, AccelError> {
+    let boxes: Vec<(Vec3, Vec3)> = triangles
+        .iter()
+        .map(|&[a, b, c]| (a.min(b).min(c), a.max(b).max(c)))
+        .collect();
+    check(&boxes)?;
+    if triangles.is_empty() {
+        return Ok(Vec::new());
+    }
+    let triangles: Vec<Triangle> = triangles
+        .iter()
+        .map(|t| {
+            let [v0, v1, v2] = t.map(Vec3A::from);
+            Triangle { v0, v1, v2 }
+        })
+        .collect();
+    let params = BvhBuildParams {
+        max_prims_per_leaf: 1,
+        ..BvhBuildParams::slow_build()
+    };
+    let bvh = build_bvh2_from_tris(&triangles, params, &mut Duration::default());
+    let node = |n: &obvhs::bvh2::node::Bvh2Node| BinaryNode {
+        lo: n.aabb().min.into(),
+        hi: n.aabb().max.into(),
+        index: match n.is_leaf() {
+            true => bvh.primitive_indices[n.first_index as usize],
+            false => n.first_index,
+        },
+        is_leaf: n.is_leaf(),
+    };
+    Ok(bvh.nodes.iter().map(node).collect())
+}
+
 fn box_ray(ray: &Ray, limit: f32) -> BoxRay {
     // Adding zero turns -0 into 0: the node test takes the sign of the reciprocal from one and the
     // near side of the box from the other.
     let dir = Vec3A::from(ray.dir) + Vec3A::ZERO;
     BoxRay::new(Vec3A::from(ray.origin), dir, 0.0, limit)
+}
+
+fn check(boxes: &[(Vec3, Vec3)]) -> Result<(), AccelError> {
+    for (lo, hi) in boxes {
+        let reach = lo.abs().max(hi.abs()).max_element();
+        if !(lo.is_finite() && hi.is_finite()) || reach > LIMIT {
+            return Err(AccelError::Coordinates { at: *lo });
+        }
+    }
+    refuse_crowds(boxes)
 }
 
 fn refuse_crowds(boxes: &[(Vec3, Vec3)]) -> Result<(), AccelError> {

@@ -2,11 +2,10 @@
 //! layer, each outward one less, and what has a layer or more is inside. A surface wound inward within
 //! another takes a layer away: an island.
 
-use super::shear::Shear;
+use super::shear::{Meeting, Shear};
 use super::solid::Bound;
-use super::tile::Triangle;
-use super::{BEHIND, Found, Triangles};
-use crate::accel::Ray;
+use super::tree::{Candidate, Kinds};
+use super::{Found, Stretch, Triangles};
 use crate::fiber::{Part, Region};
 use glam::DVec3;
 
@@ -16,9 +15,9 @@ const SAME: f64 = 1e-12;
 
 /// A crossing of a surface that is counted.
 #[derive(Clone, Copy)]
-struct Crossing {
+struct Crossing<'a> {
     t: f64,
-    index: usize,
+    triangle: Candidate<'a>,
     enters: bool,
 }
 
@@ -33,7 +32,7 @@ impl Triangles {
         dir: DVec3,
         region: Region,
         from: Option<(u32, Part)>,
-    ) -> Option<Found> {
+    ) -> Option<Found<'_>> {
         let bound = match region {
             Region::Medulla => Bound::Medulla,
             _ => Bound::Void,
@@ -49,25 +48,61 @@ impl Triangles {
         } else {
             self.layers(origin, dir, bound)
         };
+        let kinds = Kinds::of(bound).and(Kinds::around(region));
+        let mut some: Vec<Crossing<'_>> = Vec::new();
         self.each_tile(origin, dir, from, |stretch, from| {
-            let counts =
-                |t: &Triangle, enters: bool| t.bound == bound || (enters && t.sides[0] == region);
-            for c in self.crossings(stretch.origin, stretch.dir, stretch.length, from, &counts) {
-                let found = Found {
-                    t: stretch.before + c.t,
-                    index: c.index,
-                    enters: c.enters,
-                    image: stretch.image,
-                };
-                if self.tile[c.index].bound != bound {
-                    return Some(found);
+            let shear = Shear::new(stretch.origin, stretch.dir);
+            let mut last: Option<Crossing<'_>> = None;
+            let mut after = 0.0;
+            loop {
+                // All crossings up to the next outward one: as a rule there is none before it.
+                some.clear();
+                let mut end = stretch.length;
+                self.tree
+                    .visit(stretch.origin, stretch.dir, end, kinds, |triangle| {
+                        let Meeting { t, enters } = shear.meet(&triangle.corners())?;
+                        let label = triangle.label();
+                        let counts = label.bound == bound || (enters && label.sides[0] == region);
+                        if !(t >= after && t < end) || from == Some(label.source) || !counts {
+                            return None;
+                        }
+                        some.push(Crossing {
+                            t,
+                            triangle,
+                            enters,
+                        });
+                        if enters {
+                            return None;
+                        }
+                        end = end.min(t + SAME);
+                        Some(end)
+                    });
+                some.retain(|c| c.t < end);
+                self.tidy(&mut some);
+                for &c in &some {
+                    if last.is_some_and(|last| self.is_same(&last, &c)) {
+                        continue;
+                    }
+                    last = Some(c);
+                    let found = Found {
+                        t: stretch.before + c.t,
+                        triangle: c.triangle,
+                        enters: c.enters,
+                        image: stretch.image,
+                    };
+                    if c.triangle.label().bound != bound {
+                        return Some(found);
+                    }
+                    layers += if c.enters { 1 } else { -1 };
+                    if layers <= 0 {
+                        return Some(found);
+                    }
                 }
-                layers += if c.enters { 1 } else { -1 };
-                if layers <= 0 {
-                    return Some(found);
+                if end >= stretch.length {
+                    return None;
                 }
+                after = end;
             }
-            None
         })
     }
 
@@ -75,8 +110,8 @@ impl Triangles {
     fn layers(&self, origin: DVec3, dir: DVec3, bound: Bound) -> i32 {
         let mut layers = 0;
         self.each_tile(origin, dir, None, |stretch, _| {
-            let of = |t: &Triangle, _: bool| t.bound == bound;
-            for c in self.crossings(stretch.origin, stretch.dir, stretch.length, None, &of) {
+            let of = |t: Candidate<'_>| t.label().bound == bound;
+            for c in self.crossings(stretch, &of) {
                 layers += if c.enters { -1 } else { 1 };
             }
             None::<()>
@@ -91,12 +126,12 @@ impl Triangles {
         let mut layers = [0; Bound::ALL.len()];
         let mut inside = [Region::Outside; Bound::ALL.len()];
         self.each_tile(point, dir, None, |stretch, _| {
-            let of = |t: &Triangle, _: bool| which(t.bound);
-            for c in self.crossings(stretch.origin, stretch.dir, stretch.length, None, &of) {
-                let triangle = &self.tile[c.index];
-                let bound = triangle.bound as usize;
+            let of = |t: Candidate<'_>| which(t.label().bound);
+            for c in self.crossings(stretch, &of) {
+                let label = c.triangle.label();
+                let bound = label.bound as usize;
                 layers[bound] += if c.enters { -1 } else { 1 };
-                inside[bound] = triangle.sides[1];
+                inside[bound] = label.sides[1];
             }
             None::<()>
         });
@@ -110,8 +145,8 @@ impl Triangles {
         let dir = DVec3::new(cos, sin, 0.0);
         let mut layers = 0;
         self.each_tile(point, dir, None, |stretch, _| {
-            let of = |t: &Triangle, _: bool| t.bound == bound && t.shell != shell;
-            for c in self.crossings(stretch.origin, stretch.dir, stretch.length, None, &of) {
+            let of = |t: Candidate<'_>| t.label().bound == bound && self.shells[t.place()] != shell;
+            for c in self.crossings(stretch, &of) {
                 layers += if c.enters { -1 } else { 1 };
             }
             None::<()>
@@ -122,35 +157,44 @@ impl Triangles {
     /// All crossings in a tile that are to be counted, in order.
     fn crossings(
         &self,
-        origin: DVec3,
-        dir: DVec3,
-        length: f64,
-        from: Option<u32>,
-        counts: &dyn Fn(&Triangle, bool) -> bool,
-    ) -> Vec<Crossing> {
+        stretch: &Stretch,
+        counts: &dyn Fn(Candidate<'_>) -> bool,
+    ) -> Vec<Crossing<'_>> {
+        let &Stretch {
+            origin,
+            dir,
+            length,
+            ..
+        } = stretch;
         let shear = Shear::new(origin, dir);
-        let ray = Ray {
-            origin: (origin - BEHIND * dir).as_vec3(),
-            dir: dir.as_vec3(),
-        };
-        let mut all: Vec<Crossing> = Vec::new();
-        let reach = (length + 1.5 * BEHIND) as f32;
-        let _ = self.accel.closest(&ray, reach, |index, _| {
-            let triangle = &self.tile[index];
-            let meeting = shear.meet(&triangle.corners)?;
-            let within = meeting.t >= 0.0 && meeting.t < length;
-            if within && from != Some(triangle.source) && counts(triangle, meeting.enters) {
+        let mut all: Vec<Crossing<'_>> = Vec::new();
+        (self.tree).visit(origin, dir, length, Kinds::ALL, |triangle| {
+            let Meeting { t, enters } = shear.meet(&triangle.corners())?;
+            if t >= 0.0 && t < length && counts(triangle) {
                 all.push(Crossing {
-                    t: meeting.t,
-                    index,
-                    enters: meeting.enters,
+                    t,
+                    triangle,
+                    enters,
                 });
             }
             None
         });
-        all.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.index.cmp(&b.index)));
-        let key = |c: &Crossing| (self.tile[c.index].shell, c.enters);
-        all.dedup_by(|b, a| b.t - a.t < SAME && key(a) == key(b));
+        self.tidy(&mut all);
         all
+    }
+
+    /// Puts crossings in order and takes out those that are there twice.
+    fn tidy(&self, crossings: &mut Vec<Crossing<'_>>) {
+        crossings.sort_by(|a, b| {
+            let order = |c: &Crossing<'_>| c.triangle.label().source;
+            a.t.total_cmp(&b.t).then(order(a).cmp(&order(b)))
+        });
+        crossings.dedup_by(|b, a| self.is_same(a, b));
+    }
+
+    /// Whether two crossings, one after the other, are one.
+    fn is_same(&self, a: &Crossing<'_>, b: &Crossing<'_>) -> bool {
+        let key = |c: &Crossing<'_>| (self.shells[c.triangle.place()], c.enters);
+        b.t - a.t < SAME && key(a) == key(b)
     }
 }

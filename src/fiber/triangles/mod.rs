@@ -21,6 +21,7 @@ mod solid;
 mod tests;
 mod tile;
 mod topology;
+mod tree;
 mod twist;
 
 pub use error::{MeshError, Places};
@@ -28,26 +29,22 @@ use twist::Screw;
 pub(super) use twist::{turned, twisted};
 
 use super::{Element, Hit, HitState, MeshPart, Region};
-use crate::accel::{Accel, Ray};
 use crate::species::FiberMesh;
 use glam::{DVec2, DVec3};
-use shear::Shear;
-use tile::Triangle;
+use shear::{Meeting, Shear};
+use tree::{Candidate, Kinds, Tree};
 
 /// How far the search goes beyond a tile, in radii. Tiles hold twice as much.
 const OVERLAP: f64 = 1e-3;
-/// The hierarchy is asked from this much before the origin on, in radii: it passes over what is nearer
-/// than 1e-4, which in corners there are surfaces.
-const BEHIND: f64 = 2e-3;
 /// Periods that a ray may run along the axis; then it is lost.
 const MOST_TILES: usize = 10_000;
 
 /// Triangles ready for tracing.
 #[derive(Clone, Debug)]
 pub(super) struct Triangles {
-    /// In the order of traversal.
-    tile: Vec<Triangle>,
-    accel: Accel,
+    tree: Tree,
+    /// The closed surface that each triangle belongs to, by its place in the tree.
+    shells: Vec<u32>,
     /// In units of the radius.
     screw: Screw,
     /// Whether some surfaces overlap or hold others, so that crossings have to be counted.
@@ -76,20 +73,20 @@ pub(super) enum Maker {
 }
 
 /// What of a ray a region's surfaces are.
-struct Search<'a> {
+struct Search {
     shear: Shear,
-    /// Only crossings of surfaces that this takes: the triangle and whether it is entered.
-    takes: &'a dyn Fn(&Triangle, bool) -> bool,
+    /// Where it runs.
+    region: Region,
     /// The surface that the ray starts on.
     from: Option<u32>,
 }
 
 /// A triangle that a ray meets.
 #[derive(Clone, Copy, Debug)]
-struct Found {
+struct Found<'a> {
     /// Distance in radii.
     t: f64,
-    index: usize,
+    triangle: Candidate<'a>,
     enters: bool,
     /// Periods between its tile and the mesh.
     image: f64,
@@ -150,53 +147,55 @@ impl Triangles {
         let found = if self.layered && matches!(region, Region::Void | Region::Medulla) {
             self.last_of_layers(origin, dir, region, from)?
         } else {
-            let takes = |t: &Triangle, enters: bool| t.sides[usize::from(!enters)] == region;
-            self.first(origin, dir, from.map(|(source, _)| source), &takes)?
+            self.first(origin, dir, from.map(|(source, _)| source), region)?
         };
         let Found {
             t,
-            index,
+            triangle,
             enters,
             image,
         } = found;
-        let triangle = &self.tile[index];
-        let normal = self.screw.turn(triangle.normal, image);
-        let normal = if enters { normal } else { -normal };
+        let [a, b, c] = triangle.corners();
+        let normal = (b - a).cross(c - a).normalize();
+        let normal = self
+            .screw
+            .turn(if enters { normal } else { -normal }, image);
+        let label = triangle.label();
         let t = t * self.radius_um;
         Some(Hit {
             t,
             pigment_um: t,
             normal,
-            to: triangle.sides[usize::from(enters)],
-            part: triangle.part,
+            to: label.sides[usize::from(enters)],
+            part: label.part,
             state: HitState {
                 element: Element::Triangle {
-                    source: triangle.source,
-                    part: triangle.part,
+                    source: label.source,
+                    part: label.part,
                 },
             },
         })
     }
 
-    /// The first triangle taken.
+    /// The first triangle that bounds a region, met from within it.
     fn first(
         &self,
         origin: DVec3,
         dir: DVec3,
         from: Option<u32>,
-        takes: &dyn Fn(&Triangle, bool) -> bool,
-    ) -> Option<Found> {
+        region: Region,
+    ) -> Option<Found<'_>> {
         self.each_tile(origin, dir, from, |stretch, from| {
             let Stretch { origin, dir, .. } = *stretch;
             let search = Search {
                 shear: Shear::new(origin, dir),
-                takes,
+                region,
                 from,
             };
-            let (t, index, enters) = self.first_in_tile(origin, dir, stretch.beyond, &search)?;
+            let (t, triangle, enters) = self.first_in_tile(origin, dir, stretch.beyond, &search)?;
             Some(Found {
                 t: stretch.before + t,
-                index,
+                triangle,
                 enters,
                 image: stretch.image,
             })
@@ -255,32 +254,27 @@ impl Triangles {
         origin: DVec3,
         dir: DVec3,
         limit: f64,
-        search: &Search<'_>,
-    ) -> Option<(f64, usize, bool)> {
-        let ray = Ray {
-            origin: (origin - BEHIND * dir).as_vec3(),
-            dir: dir.as_vec3(),
-        };
-        let reach = |t: f64| (t + 1.5 * BEHIND) as f32;
-        let mut best: Option<(f64, usize, bool)> = None;
-        // The hierarchy sees single precision; what is nearest is decided here.
-        let _ = self.accel.closest(&ray, reach(limit), |index, _| {
-            let triangle = &self.tile[index];
-            let meeting = search.shear.meet(&triangle.corners)?;
-            let t = meeting.t;
-            if !(t >= 0.0 && t <= limit)
-                || search.from == Some(triangle.source)
-                || !(search.takes)(triangle, meeting.enters)
-            {
+        search: &Search,
+    ) -> Option<(f64, Candidate<'_>, bool)> {
+        let mut best: Option<(f64, Candidate<'_>, bool)> = None;
+        let kinds = Kinds::around(search.region);
+        // The tree sees single precision; what is nearest is decided here.
+        self.tree.visit(origin, dir, limit, kinds, |triangle| {
+            let source = triangle.label().source;
+            if search.from == Some(source) {
                 return None;
             }
-            let is_nearer = best
-                .is_none_or(|(b, i, _)| t < b || (t == b && triangle.source < self.tile[i].source));
+            let Meeting { t, enters } = search.shear.meet(&triangle.corners())?;
+            if !(t >= 0.0 && t <= limit) || !triangle.is_of(kinds, enters) {
+                return None;
+            }
+            let is_nearer =
+                best.is_none_or(|(b, other, _)| t < b || (t == b && source < other.label().source));
             if !is_nearer {
                 return None;
             }
-            best = Some((t, index, meeting.enters));
-            Some(reach(t))
+            best = Some((t, triangle, enters));
+            Some(t)
         });
         best
     }

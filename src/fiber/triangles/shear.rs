@@ -44,8 +44,13 @@ impl Shear {
     pub(super) fn meet(&self, corners: &[DVec3; 3]) -> Option<Meeting> {
         let [x, y, z] = self.axes;
         let [sx, sy, sz] = self.shear;
-        let p = corners.map(|c| c - self.origin);
-        let flat = p.map(|p| (p[x] - sx * p[z], p[y] - sy * p[z]));
+        // Plain arrays: vectors take a branch to look an axis up.
+        let o: &[f64; 3] = self.origin.as_ref();
+        let p = [&corners[0], &corners[1], &corners[2]].map(|c| {
+            let c: &[f64; 3] = c.as_ref();
+            [c[x] - o[x], c[y] - o[y], c[z] - o[z]]
+        });
+        let flat = p.map(|p| (p[0] - sx * p[2], p[1] - sy * p[2]));
         let cross = |(ax, ay): (f64, f64), (bx, by): (f64, f64)| ax * by - ay * bx;
         let u = cross(flat[1], flat[2]);
         let v = cross(flat[2], flat[0]);
@@ -57,7 +62,7 @@ impl Shear {
         if sum == 0.0 {
             return None;
         }
-        let depth = u * p[0][z] + v * p[1][z] + w * p[2][z];
+        let depth = u * p[0][2] + v * p[1][2] + w * p[2][2];
         Some(Meeting {
             t: sz * depth / sum,
             // Seen along +z of a right-handed frame, counterclockwise corners run clockwise.

@@ -13,9 +13,10 @@ const MAX_TRIANGLES: usize = 2_000_000;
 /// A mesh may reach over its period by this factor, where its ends are slanted.
 const LONGEST: f64 = 3.0;
 
-/// Steps of z, a power of two of the radius: sums of steps and periods are exact, so that images of
-/// a point one period apart are the same point wherever they are computed.
-const STEPS_PER_RADIUS: f64 = (1u64 << 36) as f64;
+/// Steps of coordinates from the axis to the far end of what touches a period. Coordinates and period
+/// are whole steps, a power of two of the radius each: sums are exact, so that images of a point one period
+/// apart are the same point wherever they are computed. Files hold single precision, which is coarser.
+const STEPS: f64 = (1u64 << 30) as f64;
 
 /// A mesh may lie beside its axis by this share of its radius before it is moved onto it.
 const OFF_AXIS: f64 = 0.01;
@@ -64,6 +65,8 @@ pub(super) struct Solid<'a> {
     /// The point that each point is an image of, and how many periods above it.
     pub(super) images: Vec<(u32, i32)>,
     pub(super) screw: Screw,
+    /// Smallest difference of coordinates, in radii.
+    pub(super) step: f64,
     /// Largest distance from the axis, micrometers.
     pub(super) radius_um: f64,
     /// What was subtracted from the points, micrometers.
@@ -140,13 +143,16 @@ impl<'a> Solid<'a> {
         let radius_um = outer()
             .map(|p| (p - shift_um).truncate().length())
             .fold(0.0, f64::max);
-        let quantized = |z: f64| (z * STEPS_PER_RADIUS).round() / STEPS_PER_RADIUS;
+        let reach = (LONGEST + 1.0) * (1.0 + period_um / radius_um);
+        let step = reach.log2().ceil().exp2() / STEPS;
+        let quantized = |x: f64| (x / step).round() * step;
         let mut solid = Self {
             source,
             points: Vec::new(),
             faces: Vec::with_capacity(used.len()),
             images: Vec::new(),
             screw: Screw::new(quantized(period_um / radius_um), twist * period_um),
+            step,
             radius_um,
             shift_um,
             warnings,
@@ -157,7 +163,7 @@ impl<'a> Solid<'a> {
             let corners = t.map(|v| {
                 let p = (placed(v) - shift_um) / radius_um;
                 // Adding zero makes -0 and 0 one point.
-                let p = DVec3::new(p.x + 0.0, p.y + 0.0, quantized(p.z) + 0.0);
+                let p = DVec3::from_array(p.to_array().map(|x| quantized(x) + 0.0));
                 *known
                     .entry((bound, p.to_array().map(f64::to_bits)))
                     .or_insert_with(|| {

@@ -4,30 +4,21 @@ use super::error::{MeshError, Places};
 use super::overlap::crossing_pairs;
 use super::solid::{Bound, Solid};
 use super::topology::{Shell, close};
+use super::tree::{Label, Tree};
 use super::{Maker, OVERLAP, Screw, Triangles};
-use crate::accel::{Accel, AccelError};
+use crate::accel::AccelError;
 use crate::fiber::{MeshPart, Part, Region};
 use crate::species::FiberMesh;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use std::collections::HashMap;
-
-/// Room around boxes, in radii: origins and directions are rounded to single precision, 6e-8 of ways
-/// up to some hundred radii.
-const ROOM: f32 = 1e-5;
 
 /// A triangle of a tile, counterclockwise seen from outside.
 #[derive(Clone, Debug)]
-pub(super) struct Triangle {
-    pub(super) corners: [DVec3; 3],
-    /// Unit, outward.
-    pub(super) normal: DVec3,
-    /// Regions outside and inside.
-    pub(super) sides: [Region; 2],
-    pub(super) bound: Bound,
-    pub(super) part: Part,
-    /// The triangle of the mesh that this is an image of, and the closed surface that it belongs to.
-    pub(super) source: u32,
-    pub(super) shell: u32,
+struct Triangle {
+    corners: [DVec3; 3],
+    label: Label,
+    /// The closed surface that it belongs to.
+    shell: u32,
 }
 
 /// Checks a mesh and prepares it for tracing.
@@ -44,31 +35,33 @@ pub(super) fn build(
         Maker::Designer => refuse_crossings(&solid, &tile)?,
         Maker::Own { overlap } => overlap,
     };
-    let boxes: Vec<(Vec3, Vec3)> = tile.iter().map(|t| box_of(&t.corners)).collect();
-    let accel = Accel::build(&boxes).map_err(|error| {
-        let at = match error {
-            AccelError::Coordinates { at } | AccelError::Coincident { at, .. } => at,
-        };
-        let mut places = Places::default();
-        solid.note(&mut places, &[at.as_dvec3()]);
-        MeshError::Crowded {
-            file: solid.file(),
-            places,
-        }
-    })?;
-    tile = (accel.order().iter())
-        .map(|&i| tile[i as usize].clone())
-        .collect();
+    let corners: Vec<[DVec3; 3]> = tile.iter().map(|t| t.corners).collect();
+    let (mut tree, places) =
+        Tree::new(&corners, solid.step, solid.screw.period).map_err(|error| {
+            let at = match error {
+                AccelError::Coordinates { at } | AccelError::Coincident { at, .. } => at,
+            };
+            let mut places = Places::default();
+            solid.note(&mut places, &[at.as_dvec3()]);
+            MeshError::Crowded {
+                file: solid.file(),
+                places,
+            }
+        })?;
+    // From here on by place, some of them more than once.
+    tile = (places.iter()).map(|&i| tile[i as usize].clone()).collect();
+    tree.label(|place| tile[place].label);
     let (lo, hi) = tile
         .iter()
-        .filter(|t| t.bound == Bound::Outer)
+        .filter(|t| t.label.bound == Bound::Outer)
         .flat_map(|t| t.corners)
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| {
             (lo.min(p), hi.max(p))
         });
     let half = 0.5 * solid.radius_um * (hi - lo);
     let mut triangles = Triangles {
-        accel,
+        shells: tile.iter().map(|t| t.shell).collect(),
+        tree,
         screw: solid.screw,
         layered: overlap,
         radius_um: solid.radius_um,
@@ -77,11 +70,11 @@ pub(super) fn build(
         semi_axes_um: [half.x, half.y],
         parts: Vec::new(),
         warnings: Vec::new(),
-        tile,
     };
     find_islands(&mut solid, &mut shells, &shell_of, &mut triangles);
-    nest(&solid, &shells, &shell_of, &mut triangles)?;
+    nest(&solid, &shells, &shell_of, &triangles, &mut tile)?;
     let voids = || shells.iter().filter(|s| s.bound == Bound::Void);
+    triangles.tree.label(|place| tile[place].label);
     triangles.void_count = voids().filter(|s| !s.inward).count();
     triangles.air_fraction = air_fraction(&solid, &triangles, voids().map(|s| s.volume).sum());
     triangles.parts = parts(&solid);
@@ -121,10 +114,12 @@ fn find_islands(
     }
     let is_island = |shell: u32| shells[shell as usize].inward;
     triangles.layered |= shells.iter().any(|s| s.inward);
-    for t in triangles.tile.iter_mut().filter(|t| is_island(t.shell)) {
-        t.corners.swap(1, 2);
-        t.normal = -t.normal;
-    }
+    let Triangles {
+        tree,
+        shells: shell_at,
+        ..
+    } = triangles;
+    tree.turn(|place| is_island(shell_at[place]));
     for (face, _) in (solid.faces.iter_mut().zip(shell_of)).filter(|(_, s)| is_island(**s)) {
         face.corners.swap(1, 2);
     }
@@ -149,17 +144,20 @@ fn images(solid: &Solid<'_>, shell_of: &[u32]) -> Vec<Triangle> {
         let last = ((hi - least) / period).floor();
         let mut image = first;
         while image <= last {
-            let corners = face.corners.map(|v| solid.image(v, image));
+            // A twist turns points off their steps.
+            let snapped = |p: DVec3| (p / solid.step).round() * solid.step;
+            let corners = face.corners.map(|v| snapped(solid.image(v, image)));
             let [a, b, c] = corners;
             // Nothing can be hit where there is no area; the edge belongs to both neighbors.
-            if let Some(normal) = (b - a).cross(c - a).try_normalize() {
+            if (b - a).cross(c - a).try_normalize().is_some() {
                 tile.push(Triangle {
                     corners,
-                    normal,
-                    sides: [Region::Outside, inside_of[face.bound as usize]],
-                    bound: face.bound,
-                    part: face.part,
-                    source: source as u32,
+                    label: Label {
+                        source: source as u32,
+                        sides: [Region::Outside, inside_of[face.bound as usize]],
+                        bound: face.bound,
+                        part: face.part,
+                    },
                     shell: shell_of[source],
                 });
             }
@@ -167,11 +165,6 @@ fn images(solid: &Solid<'_>, shell_of: &[u32]) -> Vec<Triangle> {
         }
     }
     tile
-}
-
-fn box_of(corners: &[DVec3; 3]) -> (Vec3, Vec3) {
-    let [a, b, c] = corners.map(|p| p.as_vec3());
-    (a.min(b).min(c) - ROOM, a.max(b).max(c) + ROOM)
 }
 
 /// Depth below which surfaces only touch, in radii: some roundings of single precision.
@@ -188,7 +181,7 @@ fn refuse_crossings(solid: &Solid<'_>, tile: &[Triangle]) -> Result<bool, MeshEr
     let mut found: HashMap<(Bound, Bound), (usize, Places)> = HashMap::new();
     let tolerance = TOUCH * (1.0 + solid.screw.period);
     let counted = crossing_pairs(&corners, tolerance, |a, b| {
-        let bounds = [tile[a].bound, tile[b].bound];
+        let bounds = [tile[a].label.bound, tile[b].label.bound];
         let may = matches!(bounds[0], Bound::Void | Bound::Medulla) && bounds[0] == bounds[1];
         if may && tile[a].shell != tile[b].shell {
             overlap = true;
@@ -226,7 +219,8 @@ fn nest(
     solid: &Solid<'_>,
     shells: &[Shell],
     shell_of: &[u32],
-    triangles: &mut Triangles,
+    triangles: &Triangles,
+    tile: &mut [Triangle],
 ) -> Result<(), MeshError> {
     let mut around = vec![Region::Outside; shells.len()];
     for bound in [Bound::Cortex, Bound::Medulla, Bound::Void] {
@@ -246,8 +240,9 @@ fn nest(
                 });
             }
         }
-        for t in triangles.tile.iter_mut().filter(|t| t.bound == bound) {
-            t.sides[0] = around[shell_of[t.source as usize] as usize];
+        let of_bound = tile.iter_mut().map(|t| &mut t.label);
+        for label in of_bound.filter(|label| label.bound == bound) {
+            label.sides[0] = around[shell_of[label.source as usize] as usize];
         }
     }
     Ok(())
