@@ -1,14 +1,11 @@
-//! The triangles of a tile in a tree that is small enough for caches: nodes of eight boxes and leaves of
-//! four triangles. All of a node, and of a
-//! leaf, is tested at once in single precision, with the room that the rounding needs: what a ray meets is
+//! The triangles of a tile in a tree: nodes of eight boxes, leaves of four triangles. All of a node, and of a
+//! leaf, is tested at once in single precision, with the room that its rounding needs: what a ray meets is
 //! shown to the caller, who decides in double precision, and little else is.
-//!
-//! Compressed nodes after Ylitie, Karras and Laine 2017 ("Efficient incoherent ray traversal on GPUs
-//! through compressed wide BVHs"); the binary tree that they are made from is `accel`'s.
 
 mod layout;
 mod leaf;
 mod node;
+mod pages;
 
 use super::OVERLAP;
 use super::solid::Bound;
@@ -17,6 +14,7 @@ use crate::fiber::{Part, Region};
 use glam::{DVec3, Vec3, Vec4};
 use leaf::{Leaf, SIZE};
 use node::Node;
+use pages::Table;
 use std::cell::RefCell;
 
 /// Room for single precision, relative to the longest way of a ray: half a rounding for each of up to
@@ -96,8 +94,8 @@ impl Label {
 /// A tree over triangles that the caller keeps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
-    nodes: Vec<Node>,
-    leaves: Vec<Leaf>,
+    nodes: Table<Node>,
+    leaves: Table<Leaf>,
     /// Places for boxes set aside that the deepest way needs.
     stack: usize,
     /// Corners are multiples of this, in radii.
@@ -121,18 +119,21 @@ impl Tree {
         let binary = binary_tree(&single)?;
         // From a little outside of the fiber through all of a tile.
         let reach = (2.5 + period + 4.0 * OVERLAP) as f32;
-        let mut tree = Self {
+        let room = ROUNDINGS * reach;
+        let draft = layout::lay_out(&binary, corners, step, room);
+        let tree = Self {
+            nodes: Table::new(draft.nodes),
+            leaves: Table::new(draft.leaves),
+            stack: draft.stack,
             step,
-            room: ROUNDINGS * reach,
-            ..Self::default()
+            room,
         };
-        let order = layout::lay_out(&mut tree, &binary, corners);
-        Ok((tree, order))
+        Ok((tree, draft.places))
     }
 
     /// Turns some triangles inside out.
     pub(super) fn turn(&mut self, which: impl Fn(usize) -> bool) {
-        for (index, leaf) in self.leaves.iter_mut().enumerate() {
+        for (index, leaf) in self.leaves.entries_mut().iter_mut().enumerate() {
             for k in (0..leaf.count()).filter(|k| which(SIZE * index + k)) {
                 leaf.turn(k);
             }
@@ -143,7 +144,7 @@ impl Tree {
     ///
     /// * `of`: by place.
     pub(super) fn label(&mut self, of: impl Fn(usize) -> Label) {
-        for (index, leaf) in self.leaves.iter_mut().enumerate() {
+        for (index, leaf) in self.leaves.entries_mut().iter_mut().enumerate() {
             let count = leaf.count();
             leaf.holds = [0; KINDS];
             for k in 0..count {

@@ -3,9 +3,9 @@
 //! What becomes a node, a leaf or an entry of a node above is what costs a ray least (Ylitie, Karras and
 //! Laine 2017, section 3): the least cost of each subtree as one to eight entries, from the bottom up.
 
+use super::LEAF;
 use super::leaf::{Leaf, SIZE};
 use super::node::Node;
-use super::{LEAF, Tree};
 use crate::accel::BinaryNode;
 use glam::{DVec3, Vec3};
 
@@ -16,24 +16,47 @@ const ROOM: f32 = 1e-5;
 /// What a leaf costs over what a node does: it is seldom in a cache.
 const LEAF_COST: f32 = 1.5;
 
-/// Fills a tree; for each place of a leaf, in order, the triangle there.
-pub(super) fn lay_out(tree: &mut Tree, binary: &[BinaryNode], corners: &[[DVec3; 3]]) -> Vec<u32> {
+/// A tree on paper.
+pub(super) struct Draft {
+    pub(super) nodes: Vec<Node>,
+    pub(super) leaves: Vec<Leaf>,
+    /// For each place of a leaf, in order, the triangle there.
+    pub(super) places: Vec<u32>,
+    /// Places for boxes set aside that the deepest way needs.
+    pub(super) stack: usize,
+}
+
+/// * `step`: that corners are multiples of. * `room`: around boxes at least, in radii.
+pub(super) fn lay_out(
+    binary: &[BinaryNode],
+    corners: &[[DVec3; 3]],
+    step: f64,
+    room: f32,
+) -> Draft {
+    let mut tree = Draft {
+        nodes: Vec::new(),
+        leaves: Vec::new(),
+        places: Vec::new(),
+        stack: 0,
+    };
     let mut layout = Layout {
         binary,
         plan: plan(binary),
         corners,
         places: Vec::with_capacity(corners.len() * 5 / 4),
-        room: tree.room.max(ROOM),
+        step,
+        room: room.max(ROOM),
     };
     if !binary.is_empty() {
         tree.nodes.push(Node::EMPTY);
         // Nodes to be filled: number, place in the binary tree, boxes set aside on the way there.
         let mut open = vec![(0, 0, 0)];
         while let Some((number, at, aside)) = open.pop() {
-            layout.fill(tree, number, at, aside, &mut open);
+            layout.fill(&mut tree, number, at, aside, &mut open);
         }
     }
-    layout.places
+    tree.places = layout.places;
+    tree
 }
 
 /// The best use of a subtree.
@@ -114,6 +137,7 @@ struct Layout<'a> {
     corners: &'a [[DVec3; 3]],
     /// Triangles by place: as many for each leaf as it may hold.
     places: Vec<u32>,
+    step: f64,
     room: f32,
 }
 
@@ -124,7 +148,7 @@ impl Layout<'_> {
 
     fn fill(
         &mut self,
-        tree: &mut Tree,
+        tree: &mut Draft,
         number: usize,
         at: usize,
         aside: usize,
@@ -150,7 +174,7 @@ impl Layout<'_> {
         for (k, &child) in children.iter().enumerate() {
             if self.is_leaf(child) {
                 leaves |= 1 << k;
-                let leaf = self.leaf(child, tree.step);
+                let leaf = self.leaf(child);
                 tree.leaves.push(leaf);
             } else {
                 open.push((tree.nodes.len(), child, aside));
@@ -179,7 +203,7 @@ impl Layout<'_> {
         }
     }
 
-    fn leaf(&mut self, at: usize, step: f64) -> Leaf {
+    fn leaf(&mut self, at: usize) -> Leaf {
         let mut known: Vec<u32> = Vec::with_capacity(SIZE);
         let mut stack = vec![at];
         while let Some(at) = stack.pop() {
@@ -195,6 +219,6 @@ impl Layout<'_> {
         for k in 0..SIZE {
             self.places.push(known[k.min(known.len() - 1)]);
         }
-        Leaf::new(&corners, step)
+        Leaf::new(&corners, self.step)
     }
 }

@@ -51,8 +51,8 @@ impl<T> Table<T> {
         self.all.len() - self.first
     }
 
-    pub(super) fn entries(&self) -> &[T] {
-        &self.all[self.first..]
+    pub(super) fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
     pub(super) fn entries_mut(&mut self) -> &mut [T] {
