@@ -5,7 +5,7 @@
 //! least.
 
 use std::time::Instant;
-use vair::bake::{Photon, fly};
+use vair::bake::{Photon, Sides, fly};
 use vair::fiber::Fiber;
 use vair::species::Species;
 
@@ -77,6 +77,7 @@ fn round(fiber: &Fiber) -> (f64, u64) {
             seed: 0,
             stream: i,
             sin_range: (bin, bin + 0.125),
+            sides: Sides::ALL,
         };
         events += u64::from(fly(fiber, &photon, 1000).events);
     }

@@ -4,7 +4,7 @@ use crate::bake::{BakeError, Baked, Cache, Settings, find_or_bake};
 use crate::blame::Blame;
 use crate::bsdf::{HairMaterial, TableSet, Zone};
 use crate::progress::{Cancel, Progress};
-use crate::species::{HairClass, Species, Station};
+use crate::species::{HairClass, Section, Species, Station};
 use crate::table::{Provenance, ScatterTable, TableError, TableFile, Undyed};
 
 /// Materials that cannot be made.
@@ -59,7 +59,28 @@ pub fn station_table(
     )
 }
 
-/// The materials of all hair classes: every station baked once, dyed for every pigment zone.
+/// The settings for a station: only flat hairs have sides, and only those that are not twisted. The
+/// photons are then those of each azimuth.
+fn settings_of(station: &Station, settings: &Settings) -> Settings {
+    let structure = &station.structure;
+    let is_flat = structure.aspect >= LEAST_ASPECT || structure.section != Section::Ellipse;
+    if settings.azimuths > 1 && (!is_flat || structure.twist_turns_per_cm != 0.0) {
+        return Settings {
+            azimuths: 1,
+            ..settings.clone()
+        };
+    }
+    Settings {
+        photons: settings.photons.saturating_mul(settings.azimuths as u64),
+        ..settings.clone()
+    }
+}
+
+/// Sections less flat than this are taken as round where azimuths are asked for.
+const LEAST_ASPECT: f64 = 1.2;
+
+/// The materials of all hair classes: every station baked once, dyed for every pigment zone. Of several
+/// azimuths, the photons of the settings are those of each; round and twisted fibers average over them.
 ///
 /// # Errors
 /// A fiber that cannot be built or dyed, or [`BakeError::Stopped`]: a picture needs all its tables.
@@ -116,7 +137,8 @@ pub fn materials_with(
                 }
                 continue;
             }
-            let baked = station_table(species, class, station, settings, cache, progress, cancel)?;
+            let settings = settings_of(station, settings);
+            let baked = station_table(species, class, station, &settings, cache, progress, cancel)?;
             if !baked.complete {
                 return Err(BakeError::Stopped.into());
             }

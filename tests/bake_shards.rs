@@ -70,8 +70,20 @@ fn shards(structure: &Structure, settings: &Settings, of: u64, folder: &Path) ->
 #[test]
 fn any_split_in_any_order_is_the_whole() {
     let folder = tempfile::tempdir().unwrap();
-    for structure in [Structure::default(), colored()] {
-        let whole = bake(&structure, &settings());
+    let flat = Structure {
+        aspect: 3.0,
+        ..Structure::default()
+    };
+    let sides = Settings {
+        azimuths: 3,
+        ..settings()
+    };
+    for (structure, settings) in [
+        (Structure::default(), settings()),
+        (colored(), settings()),
+        (flat, sides),
+    ] {
+        let whole = bake(&structure, &settings);
         fly(&whole);
         let whole = whole.snapshot().unwrap();
         assert_eq!(
@@ -79,7 +91,7 @@ fn any_split_in_any_order_is_the_whole() {
             if structure.is_colored() { 3 } else { 1 }
         );
         for of in [2, 3, 7] {
-            let mut paths = shards(&structure, &settings(), of, folder.path());
+            let mut paths = shards(&structure, &settings, of, folder.path());
             for _ in 0..of {
                 paths.rotate_left(1);
                 let merged = Sums::merge(&paths).unwrap();

@@ -16,10 +16,20 @@ use vair::{skin, species};
 /// Mean radiance over a small picture of clear fur on nothing, its standard error, and the share of
 /// the picture that is fur.
 fn furnace(name: &str, overrides: &[&str], sampler: Sampler) -> (Rgb, f64, f64) {
+    furnace_of(name, overrides, sampler, 1)
+}
+
+fn furnace_of(
+    name: &str,
+    overrides: &[&str],
+    sampler: Sampler,
+    azimuths: usize,
+) -> (Rgb, f64, f64) {
     let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
     let species = species::load(name, &overrides).unwrap();
     let bake = Settings {
         photons: 300_000,
+        azimuths,
         ..Settings::cone()
     };
     let cancel = Cancel::default();
@@ -79,4 +89,24 @@ fn pigment_is_seen_in_the_furnace() {
         mean.x < 0.995 && mean.z < mean.x,
         "a little eumelanin must show: {mean}"
     );
+}
+
+/// Flat hairs whose sides are told apart lose no light either.
+#[test]
+fn clear_flat_hair_is_invisible() {
+    let clear = [
+        "guard.pigment.0.eumelanin=0",
+        "guard.pigment.0.pheomelanin=0",
+        "under.pigment.1.eumelanin=0",
+        "under.pigment.1.pheomelanin=0",
+    ];
+    for sampler in [Sampler::Qsir, Sampler::Mis] {
+        let (mean, error, fur) = furnace_of("harbor-seal", &clear, sampler, 3);
+        assert!(fur > 0.02, "there is fur: {fur}");
+        let off = f64::from((mean - 1.0).abs().max_element()) / fur;
+        assert!(
+            off < 0.005 + 3.0 * error / fur,
+            "{sampler:?}: {mean} +- {error}"
+        );
+    }
 }

@@ -10,7 +10,7 @@ mod closed_form;
 
 use closed_form::{energies, over_bin};
 use std::f64::consts::{FRAC_PI_2, PI};
-use vair::bake::{End, Flight, Photon, Settings, bake, find_or_bake, fly};
+use vair::bake::{End, Flight, Photon, Settings, Sides, bake, find_or_bake, fly};
 use vair::fiber::Fiber;
 use vair::progress::{Cancel, Silent};
 use vair::species::{
@@ -72,6 +72,7 @@ fn flights(structure: &Structure, theta: f64, count: u64) -> Vec<Flight> {
         seed: 7,
         stream,
         sin_range: (sin - 1e-9, sin + 1e-9),
+        sides: Sides::ALL,
     };
     (0..count)
         .map(|i| fly(&fiber, &photon(i), EVENTS))

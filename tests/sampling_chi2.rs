@@ -122,7 +122,7 @@ fn every_species_samples_what_its_density_says() {
             let material = HairMaterial::Tables(set);
             for (i, theta) in [-1.45, -0.5, 0.11, 0.9].into_iter().enumerate() {
                 let wo = frame::direction(theta, 0.0).as_vec3();
-                let bsdf = material.at(0.5, 3.0, wo, 0.5);
+                let bsdf = material.at(0.5, 3.0, wo, 0.0, 0.5);
                 let z = chi_squared(&bsdf, i as u64, |_| 1.0);
                 assert!(
                     z < LIMIT,
@@ -131,6 +131,36 @@ fn every_species_samples_what_its_density_says() {
                 );
             }
         }
+    }
+}
+
+/// Lobes of a flat hair at some azimuths, two of them seen mirrored.
+#[test]
+fn azimuths_sample_what_their_density_says() {
+    let species = species::load("harbor-seal", &[]).unwrap();
+    let class = &species.classes[0];
+    let settings = Settings {
+        photons: 500_000,
+        azimuths: 3,
+        ..Settings::cone()
+    };
+    let fiber = Fiber::build(&class.stations[1].structure, 0).unwrap();
+    let origin = Provenance::default();
+    let baked = bake(&fiber, &settings, origin, &Silent, &Cancel::default()).unwrap();
+    let maps = baked.table.dye(class.pigment[0].absorption_per_um());
+    let table = ScatterTable::from(maps.unwrap());
+    for (i, (theta, azimuth)) in [(0.11, 0.3), (0.9, 1.0), (-0.5, 2.0), (-1.2, -0.4)]
+        .into_iter()
+        .enumerate()
+    {
+        let wo = frame::direction(theta, 0.0).as_vec3();
+        let bsdf = Bsdf::Table(table.lobe_at(wo, azimuth, 0.9));
+        let z = chi_squared(&bsdf, i as u64, |_| 1.0);
+        assert!(z < LIMIT, "theta {theta} azimuth {azimuth}: {z:.1} sigma");
+        // The lobe of another side would be found out.
+        let mirror = |w: Vec3| bsdf.pdf(w * Vec3::new(1.0, -1.0, 1.0)) / bsdf.pdf(w).max(1e-9);
+        let z = chi_squared(&bsdf, i as u64, mirror);
+        assert!(z > LIMIT, "mirrored: only {z:.1} sigma");
     }
 }
 
@@ -152,6 +182,6 @@ fn a_density_off_by_two_percent_is_caught() {
             0.98
         }
     };
-    let z = chi_squared(&material.at(0.5, 1.0, wo, 0.5), 9, checker);
+    let z = chi_squared(&material.at(0.5, 1.0, wo, 0.0, 0.5), 9, checker);
     assert!(z > LIMIT, "only {z:.1} sigma");
 }

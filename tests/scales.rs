@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use rayon::prelude::*;
-use vair::bake::{End, Flight, Photon, fly};
+use vair::bake::{End, Flight, Photon, Sides, fly};
 use vair::fiber::Fiber;
 use vair::math::frame;
 use vair::species::{
@@ -44,6 +44,7 @@ fn flights(fiber: &Fiber, sin_range: (f64, f64), photons: u64) -> Vec<Flight> {
                     seed: 11,
                     stream,
                     sin_range,
+                    sides: Sides::ALL,
                 },
                 1000,
             )

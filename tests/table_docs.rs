@@ -8,6 +8,7 @@ fn docs_show_the_tested_reader() {
         (tables, include_str!("clients/read_table.py")),
         (tables, include_str!("clients/read_packed.py")),
         (sums, include_str!("clients/read_sums.py")),
+        (tables, include_str!("clients/read_azimuths.py")),
     ] {
         let (_, code) = reader.split_once('\n').unwrap_or_default();
         assert!(docs.contains(&format!("```python\n{}```", code.trim_start())));

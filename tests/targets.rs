@@ -6,7 +6,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-use vair::bake::{End, Flight, Photon, fly};
+use vair::bake::{End, Flight, Photon, Sides, fly};
 use vair::fiber::{Fiber, Region};
 use vair::math::frame;
 use vair::species::{Continuity, MedullaKind, Structure, load};
@@ -33,6 +33,7 @@ fn flights(structure: &Structure, theta_deg: f64, photons: u64) -> Vec<Flight> {
                 seed: 5,
                 stream,
                 sin_range,
+                sides: Sides::ALL,
             };
             fly(&fiber, &photon, MAX_EVENTS)
         })

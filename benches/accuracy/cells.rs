@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
-use vair::bake::{End, Photon, fly};
+use vair::bake::{End, Photon, Sides, fly};
 use vair::fiber::Fiber;
 use vair::math::frame;
 use vair::table::ScatterTable;
@@ -71,6 +71,7 @@ impl Cells {
                     seed,
                     stream: ((i as u64) << 40) | index,
                     sin_range: ((center - half).sin(), (center + half).sin()),
+                    sides: Sides::ALL,
                 };
                 let flight = fly(fiber, &photon, 1000);
                 let End::Escaped(w) = flight.end else {

@@ -10,7 +10,7 @@
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Instant;
-use vair::bake::{End, Photon, fly};
+use vair::bake::{End, Photon, Sides, fly};
 use vair::fiber::Fiber;
 use vair::species::{Structure, load};
 
@@ -175,6 +175,7 @@ fn walk(fiber: &Fiber, seed: u64) -> Round {
             seed,
             stream: i,
             sin_range: (bin, bin + 0.125),
+            sides: Sides::ALL,
         };
         let flight = fly(fiber, &photon, EVENTS);
         round.events += f64::from(flight.events);

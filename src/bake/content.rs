@@ -73,3 +73,22 @@ fn short(value: Value) -> Value {
         other => other,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tables without azimuths keep their names: what averages is not written down.
+    #[test]
+    fn azimuths_are_named_where_there_are_several() {
+        let name = |azimuths| {
+            let settings = Settings {
+                azimuths,
+                ..Settings::cone()
+            };
+            Recipe::new(&Structure::default(), &settings).0["settings"].clone()
+        };
+        assert!(name(1).get("azimuths").is_none());
+        assert_eq!(name(8)["azimuths"], 8);
+    }
+}

@@ -152,7 +152,7 @@ impl Chance {
 mod tests {
     use super::*;
     use crate::bake::entry::{NODE_BITS, Stratified};
-    use crate::bake::{End, Photon, fly_forked};
+    use crate::bake::{End, Photon, Sides, fly_forked};
     use crate::species::Structure;
     use glam::DVec3;
 
@@ -183,6 +183,7 @@ mod tests {
                 seed,
                 stream: node << NODE_BITS | index,
                 sin_range,
+                sides: Sides::ALL,
             };
             fly_forked(&fiber, &photon, 1000, |part, flight| {
                 let chords = flight.events - 1;

@@ -5,6 +5,7 @@ use super::microfacet::{Ratio, Turn};
 use super::photon::follow_from;
 use super::{End, Flight, follow};
 use crate::fiber::{Fiber, Hit, Optics, Region};
+use crate::math::symmetry::Symmetry;
 use crate::math::turn::unit_vector;
 use crate::sampling::{Rng, hash64};
 use crate::table::PHOTON;
@@ -19,6 +20,36 @@ pub struct Photon {
     pub stream: u64,
     /// Range of sin(theta) of the query direction, uniform in solid angle over it.
     pub sin_range: (f64, f64),
+    /// Range of its azimuth.
+    pub sides: Sides,
+}
+
+/// The sides from which photons come: evenly from a range of query azimuths and all that the
+/// fiber's symmetry makes the same.
+#[derive(Clone, Copy, Debug)]
+pub struct Sides {
+    /// From and to, turns from the major axis of the section.
+    pub turns: [f64; 2],
+    /// What stands for what.
+    pub symmetry: Symmetry,
+}
+
+impl Sides {
+    /// All round.
+    pub const ALL: Self = Self {
+        turns: [0.0, 1.0],
+        symmetry: Symmetry::None,
+    };
+
+    /// The azimuth of a random number in `[0, 1)`, in turns, and whether what leaves is to be mirrored.
+    #[inline]
+    fn pick(&self, u: f64) -> (f64, bool) {
+        let [from, to] = self.turns;
+        let u = u * self.symmetry.images() as f64;
+        let image = u as usize;
+        let turns = from + (to - from) * (u - image as f64);
+        self.symmetry.image(turns, image)
+    }
 }
 
 /// Entries tried before a photon counts as missed: its beam covers the bounding cylinder, most of
@@ -88,6 +119,8 @@ struct Entry {
     dir: DVec3,
     /// Cosine and sine of the fiber's rotation.
     turn: DVec2,
+    /// Whether the fiber's mirror image is what the photon stands for.
+    mirrored: bool,
     /// Place and boundary, unless it missed.
     met: Option<(DVec3, Hit)>,
 }
@@ -98,7 +131,8 @@ impl Entry {
         let (lo, hi) = photon.sin_range;
         let sin = lo + (hi - lo) * along;
         let cos = (1.0 - sin * sin).max(0.0).sqrt();
-        let turn = unit_vector(rng.uniform());
+        let (turns, mirrored) = photon.sides.pick(rng.uniform());
+        let turn = unit_vector(turns);
         let dir = rotate(DVec3::new(-cos, 0.0, -sin), turn);
         let radius = fiber.bounding_radius_um();
         let mut h = 2.0 * across - 1.0;
@@ -118,6 +152,7 @@ impl Entry {
             query: DVec2::new(cos, sin),
             dir,
             turn,
+            mirrored,
             met,
         }
     }
@@ -138,7 +173,14 @@ impl Entry {
         Flight {
             query: self.query,
             end: match way.end {
-                End::Escaped(dir) => End::Escaped(rotate(dir, back)),
+                End::Escaped(dir) => {
+                    let dir = rotate(dir, back);
+                    End::Escaped(if self.mirrored {
+                        dir.with_y(-dir.y)
+                    } else {
+                        dir
+                    })
+                }
                 other => other,
             },
             ..way
@@ -202,6 +244,7 @@ mod tests {
                 seed: 3,
                 stream: (5 << 40) | index,
                 sin_range: (0.0, 1.0),
+                sides: Sides::ALL,
             };
             let (a, b) = stratified(&photon);
             counts[(a * 10.0) as usize][(b * 10.0) as usize] += 1;

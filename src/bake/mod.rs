@@ -36,7 +36,7 @@ mod touched;
 pub use cache::{Cache, CacheSize};
 pub use checkpoint::{Checkpoint, Found, drive};
 pub use content::content_hash;
-pub use entry::{Photon, fly, fly_forked};
+pub use entry::{Photon, Sides, fly, fly_forked};
 pub use find::{find, find_or_bake};
 pub use goal::{Ended, Goal};
 pub use photon::{End, Flight, follow};

@@ -60,7 +60,14 @@ impl Norm {
         filter: Option<&Reconstruction>,
     ) -> Vec<Noise> {
         let limit = LIMIT_DEG.to_radians();
-        let counts: Vec<bool> = nodes.centers.iter().map(|c| c.abs() <= limit).collect();
+        let last = nodes.azimuths.count - 1;
+        let counts: Vec<bool> = (0..nodes.len())
+            .map(|node| {
+                // Of several azimuths the first and the last: edge and flat side differ most.
+                let bin = nodes.azimuth_bin(node);
+                nodes.theta(node).abs() <= limit && (bin == 0 || bin == last)
+            })
+            .collect();
         let mut noise = match filter {
             _ if tallies.iter().any(Tally::is_empty) => vec![Noise::default(); nodes.len()],
             Some(filter) => filter.noise(tallies, self, &counts),

@@ -5,8 +5,9 @@ use super::reconstruct::Reconstruction;
 use super::tally::Tally;
 use super::{BakeError, Settings};
 use crate::fiber::Fiber;
+use crate::math::symmetry::Symmetry;
 use crate::math::unicube::Unicube;
-use crate::table::{Ledger, Nodes, Provenance, StructureTable, Undyed};
+use crate::table::{Azimuths, Ledger, Nodes, Provenance, StructureTable, Undyed};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -17,8 +18,11 @@ pub(super) struct Plan {
     pub(super) settings: Settings,
     /// Mean radius of the fiber, micrometers.
     pub(super) radius_um: f64,
-    /// Whether maps are averaged with their mirror images.
+    /// Whether what is symmetric is averaged: maps with their mirror images, or sides of the fiber.
     pub(super) folded: bool,
+    /// The symmetry of the section; of use for several azimuths only.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub(super) symmetry: Symmetry,
     /// Hash of the recipe of each channel: one, or three where materials differ by color.
     pub(super) recipes: Vec<String>,
 }
@@ -31,6 +35,10 @@ impl Plan {
                 .first()
                 .map_or(0.0, |f| 0.5 * f.structure().diameter_um),
             folded: settings.fold && fibers.iter().all(|f| f.is_mirror_symmetric()),
+            symmetry: match fibers.first() {
+                Some(fiber) if settings.fold && settings.azimuths > 1 => fiber.symmetry(),
+                _ => Symmetry::None,
+            },
             recipes: fibers
                 .iter()
                 .map(|f| Recipe::new(f.structure(), settings).hash())
@@ -39,18 +47,33 @@ impl Plan {
     }
 
     pub(super) fn nodes(&self) -> Nodes {
-        Nodes::new(self.settings.mode, self.settings.bins)
+        let Settings {
+            mode,
+            bins,
+            azimuths,
+            ..
+        } = self.settings;
+        Nodes::new(mode, bins).at_azimuths(Azimuths {
+            count: azimuths,
+            symmetry: self.symmetry,
+        })
+    }
+
+    /// Whether each map is averaged with its own mirror image. Not so for several azimuths, where it
+    /// would be that of another one.
+    pub(super) fn folds_maps(&self) -> bool {
+        self.folded && self.settings.azimuths == 1
     }
 
     /// Sums to be kept: one a node and channel, channel by channel.
     pub(super) fn units(&self) -> usize {
-        self.recipes.len() * self.settings.bins
+        self.recipes.len() * self.settings.nodes()
     }
 
     /// What takes noise off the maps of a table.
     pub(super) fn filter(&self, cube: &Unicube) -> Option<Reconstruction> {
         let wanted = self.settings.reconstruct;
-        wanted.then(|| Reconstruction::new(cube, &self.nodes(), self.folded))
+        wanted.then(|| Reconstruction::new(cube, &self.nodes(), self.folds_maps()))
     }
 
     /// An empty sum of one node.
@@ -96,7 +119,7 @@ impl Plan {
         let mut tables = self
             .recipes
             .iter()
-            .zip(tallies.chunks(self.settings.bins))
+            .zip(tallies.chunks(self.settings.nodes()))
             .map(|(recipe, tallies)| self.table(recipe, tallies, filter, photons, provenance));
         match (tables.next(), tables.next(), tables.next()) {
             (Some(red), Some(green), Some(blue)) => {
@@ -123,7 +146,7 @@ impl Plan {
         let cube = Unicube::new(self.settings.face);
         let maps = tallies.par_iter().with_max_len(1).map(|tally| {
             let mut tally = tally.clone();
-            if self.folded {
+            if self.folds_maps() {
                 tally.fold(&cube);
             }
             (tally.flux(), tally.error(), tally.ledger())
@@ -165,4 +188,9 @@ impl Plan {
         }
         table
     }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+fn is_none(symmetry: &Symmetry) -> bool {
+    *symmetry == Symmetry::None
 }

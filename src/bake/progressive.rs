@@ -5,7 +5,7 @@ use super::goal::{Ended, Goal, first_check};
 use super::noise::Norm;
 use super::plan::Plan;
 use super::reconstruct::Reconstruction;
-use super::settings::check;
+use super::settings::{check, check_sides};
 use super::sums_file::Header;
 use super::tally::Tally;
 use super::{BakeError, Settings, Shard};
@@ -116,10 +116,14 @@ impl<'a> Bake<'a> {
 
     fn of(fibers: Vec<Held<'a>>, recipe: Recipe, settings: &Settings) -> Result<Self, BakeError> {
         let lent: Vec<&Fiber> = fibers.iter().map(Held::get).collect();
+        check_sides(&lent, settings)?;
         let plan = Plan::new(&lent, settings);
         let cube = Unicube::new(settings.face);
         let tallies = || (0..plan.units()).map(|_| plan.empty_tally());
-        let (norm, filter) = rayon::join(|| Norm::new(&cube, plan.folded), || plan.filter(&cube));
+        let (norm, filter) = rayon::join(
+            || Norm::new(&cube, plan.folds_maps()),
+            || plan.filter(&cube),
+        );
         Ok(Self {
             nodes: plan.nodes(),
             norm,
@@ -137,7 +141,7 @@ impl<'a> Bake<'a> {
                 adding: 0.0,
                 snapshot: Duration::ZERO,
                 reported: None,
-                check: first_check(settings.bins),
+                check: first_check(settings.nodes()),
             }),
             header: Header::new(recipe, plan),
             range: 0..settings.photons,
@@ -196,8 +200,8 @@ impl<'a> Bake<'a> {
 
     /// Relative L2 error of S at the clear level, over all queries and exits within 73 degrees of
     /// the normal plane, estimated from the counts; infinite as long as noise hides everything. Of
-    /// three channels the worst. Estimated when it is first asked for after a pass, which takes about as
-    /// long as [`Bake::snapshot`].
+    /// three channels the worst; of several azimuths those of the first and the last. Estimated when it is
+    /// first asked for after a pass, which takes about as long as [`Bake::snapshot`].
     pub fn error(&self) -> f64 {
         let done = self.done();
         if let Some(error) = done.error.get() {

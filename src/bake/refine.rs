@@ -144,7 +144,7 @@ impl Bake<'_> {
         if left == 0 {
             return Err(Ended::Photons);
         }
-        let nodes = self.header.plan.settings.bins as u64;
+        let nodes = self.nodes.len() as u64;
         let mut count = match hand.pace {
             None => FIRST_PASS * nodes,
             Some(pace) => {

@@ -2,7 +2,7 @@
 
 use super::tally;
 use crate::blame::Blame;
-use crate::fiber::FiberError;
+use crate::fiber::{Fiber, FiberError};
 use crate::sampling::hash64;
 use crate::table::Mode;
 
@@ -13,6 +13,10 @@ pub struct Settings {
     pub mode: Mode,
     /// Inclination nodes, 2..=256.
     pub bins: usize,
+    /// Bins of query azimuth around the section, 1..=64, at most 256 nodes in all; 1 averages over all
+    /// of them. Cone mode, and no twist.
+    #[serde(default = "averaged", skip_serializing_if = "is_averaged")]
+    pub azimuths: usize,
     /// Texels along a face edge: a power of two, 4..=512.
     pub face: usize,
     /// Photons over all nodes.
@@ -28,7 +32,8 @@ pub struct Settings {
     pub photon_seed: u64,
     /// Optical depths per mean radius, ascending, the first 0, then a geometric series of ratio 2.
     pub levels: Vec<f64>,
-    /// Average each map with its mirror image where the fiber allows it: half the variance.
+    /// Average each map with its mirror image where the fiber allows it: half the variance. Of several
+    /// azimuths the symmetry of the section makes maps the same, and photons of all go into one.
     pub fold: bool,
     /// Follow both what the surface reflects and what goes in, where light first meets the fiber.
     pub fork: bool,
@@ -56,9 +61,14 @@ impl Settings {
         self.seed ^ hash64(self.photon_seed) ^ hash64(0)
     }
 
+    /// Nodes of inclination and azimuth.
+    pub fn nodes(&self) -> usize {
+        self.bins * self.azimuths
+    }
+
     /// As many photons as the sums of so many nodes can hold.
-    pub fn most_photons(bins: usize) -> u64 {
-        MOST_A_NODE * bins as u64
+    pub fn most_photons(nodes: usize) -> u64 {
+        MOST_A_NODE * nodes as u64
     }
 
     /// The default: the same storage and count in the cone frame, no light cut off.
@@ -66,6 +76,7 @@ impl Settings {
         Self {
             mode: Mode::Cone,
             bins: 16,
+            azimuths: 1,
             face: 64,
             photons: 1_000_000_000,
             max_events: 1000,
@@ -77,6 +88,15 @@ impl Settings {
             reconstruct: true,
         }
     }
+}
+
+fn averaged() -> usize {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+fn is_averaged(azimuths: &usize) -> bool {
+    *azimuths == 1
 }
 
 /// The first level that is not clear. Higher, and albedos of human hair, in which some light stays
@@ -136,11 +156,27 @@ impl BakeError {
     }
 }
 
+/// Most bins of azimuth, and most nodes in all.
+const MOST_AZIMUTHS: usize = 64;
+const MOST_NODES: usize = 256;
 /// Below this a table is all holes.
 const LEAST_A_NODE: u64 = 8;
 /// A sum of this many photons in units of 2^-32 still fits 64 bits, whatever texel they go to. With
 /// 16 nodes these are 6.9e10 photons. (One may come on top by uneven division: it fits, too.)
 const MOST_A_NODE: u64 = (1 << 32) - 2;
+
+/// Refuses several azimuths of fibers that turn them over.
+pub(super) fn check_sides(fibers: &[&Fiber], settings: &Settings) -> Result<(), BakeError> {
+    let twisted = |fiber: &&Fiber| fiber.structure().twist_turns_per_cm != 0.0;
+    if settings.azimuths > 1 && fibers.iter().any(twisted) {
+        return Err(BakeError::Setting {
+            name: "azimuths",
+            found: settings.azimuths.to_string(),
+            expected: "1 where the fiber is twisted: it shows all its sides",
+        });
+    }
+    Ok(())
+}
 
 /// Refuses settings out of range.
 pub(super) fn check(settings: &Settings) -> Result<(), BakeError> {
@@ -161,12 +197,26 @@ pub(super) fn check(settings: &Settings) -> Result<(), BakeError> {
             "a power of two from 4 to 512",
         );
     }
+    if !(1..=MOST_AZIMUTHS).contains(&settings.azimuths) || settings.nodes() > MOST_NODES {
+        return refuse(
+            "azimuths",
+            settings.azimuths.to_string(),
+            "1 to 64, and times the bins at most 256",
+        );
+    }
+    if settings.azimuths > 1 && settings.mode == Mode::Paper {
+        return refuse(
+            "azimuths",
+            settings.azimuths.to_string(),
+            "1 in paper mode: the paper averages them",
+        );
+    }
     let photons = LEAST_A_NODE..=MOST_A_NODE;
-    if !photons.contains(&(settings.photons / settings.bins as u64)) {
+    if !photons.contains(&(settings.photons / settings.nodes() as u64)) {
         return refuse(
             "photons",
             settings.photons.to_string(),
-            "8 to 4294967295 a bin",
+            "8 to 4294967295 a node",
         );
     }
     if !(1..=tally::MAX_LEVELS).contains(&settings.levels.len()) {

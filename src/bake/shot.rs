@@ -4,7 +4,7 @@ use super::cylinder::{Chance, Cylinder};
 use super::deposit::{Deposit, Deposits, Rest};
 use super::entry::{NODE_BITS, Stratified};
 use super::tally::Tally;
-use super::{End, Flight, Photon, Settings, fly, fly_forked};
+use super::{End, Flight, Photon, Settings, Sides, fly, fly_forked};
 use crate::fiber::Fiber;
 use crate::math::frame::shift_inclination;
 use crate::math::unicube::Unicube;
@@ -23,6 +23,7 @@ pub(super) struct Shot<'a> {
     cube: &'a Unicube,
     node: usize,
     sin_range: (f64, f64),
+    sides: Sides,
     /// Cosine and sine of the node's inclination.
     center: DVec2,
     /// The fiber if it is a bare cylinder.
@@ -37,13 +38,18 @@ impl<'a> Shot<'a> {
         cube: &'a Unicube,
         node: usize,
     ) -> Self {
+        let [from, to] = nodes.theta_range(node);
         Self {
             fiber,
             settings,
             cube,
             node,
-            sin_range: (nodes.edges[node].sin(), nodes.edges[node + 1].sin()),
-            center: DVec2::from_angle(nodes.centers[node]),
+            sin_range: (from.sin(), to.sin()),
+            sides: Sides {
+                turns: nodes.azimuths.range_turns(nodes.azimuth_bin(node)),
+                symmetry: nodes.azimuths.symmetry,
+            },
+            center: DVec2::from_angle(nodes.theta(node)),
             cylinder: Cylinder::of(fiber, settings),
         }
     }
@@ -121,6 +127,7 @@ impl<'a> Shot<'a> {
             seed: self.settings.seed_of_photons(),
             stream: ((self.node as u64) << NODE_BITS) | index,
             sin_range: self.sin_range,
+            sides: self.sides,
         };
         let max_events = self.settings.max_events;
         if self.settings.fork {

@@ -63,7 +63,7 @@ impl Header {
 
     /// The arrays of a file with this header: name, shape and place.
     fn arrays(&self) -> (Map<String, Value>, u64) {
-        let head = [self.plan.recipes.len(), self.plan.settings.bins];
+        let head = [self.plan.recipes.len(), self.plan.settings.nodes()];
         let (mut map, mut at) = (Map::new(), 0u64);
         for (name, shape) in Tally::shapes(self.plan.settings.face, self.plan.settings.levels.len())
         {

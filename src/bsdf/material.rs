@@ -45,9 +45,10 @@ impl TableSet {
         })
     }
 
-    /// The table at a point: between stations and across soft edges of zones one of two is drawn
-    /// with the share as its probability. On average that is the blend, at a fraction of its cost.
-    fn choose(&self, at: f32, tip_mm: f32, u: f32) -> &ScatterTable {
+    /// The table at a point, and a random number that is left: between stations and across soft edges
+    /// of zones one of two is drawn with the share as its probability. On average that is the blend, at
+    /// a fraction of its cost.
+    fn choose(&self, at: f32, tip_mm: f32, u: f32) -> (&ScatterTable, f32) {
         let (s0, s1, share) = bracket_station(&self.stations, at);
         let (second, u) = if u < share {
             (true, u / share)
@@ -56,8 +57,12 @@ impl TableSet {
         };
         let station = if second { s1 } else { s0 };
         let (z0, z1, share) = bracket_zone(&self.zones, tip_mm);
-        let zone = if u < share { z1 } else { z0 };
-        &self.tables[station * self.zones.len() + zone]
+        let (zone, u) = if u < share {
+            (z1, u / share)
+        } else {
+            (z0, rescale(u, share))
+        };
+        (&self.tables[station * self.zones.len() + zone], u)
     }
 }
 
@@ -98,11 +103,27 @@ impl HairMaterial {
     /// * `at`: position along the strand, 0 root .. 1 tip.
     /// * `tip_mm`: distance from the tip along the strand, millimeters.
     /// * `wo`: unit direction to the viewer in the strand frame.
+    /// * `azimuth`: of `wo` around the strand from the major axis of its section, radians. Of effect
+    ///   where tables tell azimuths apart.
     /// * `u`: a random number in `[0, 1)` that chooses where tables blend.
-    pub fn at(&self, at: f32, tip_mm: f32, wo: Vec3, u: f32) -> Bsdf<'_> {
+    pub fn at(&self, at: f32, tip_mm: f32, wo: Vec3, azimuth: f32, u: f32) -> Bsdf<'_> {
         match self {
             Self::Isotropic(albedo) => Bsdf::Isotropic(*albedo),
-            Self::Tables(set) => Bsdf::Table(set.choose(at, tip_mm, u).lobe(wo)),
+            Self::Tables(set) => {
+                let (table, u) = set.choose(at, tip_mm, u);
+                Bsdf::Table(table.lobe_at(wo, azimuth, u))
+            }
+        }
+    }
+
+    /// Whether any table tells azimuths apart.
+    pub fn has_azimuths(&self) -> bool {
+        match self {
+            Self::Isotropic(_) => false,
+            Self::Tables(set) => {
+                let has = |table: &ScatterTable| !table.nodes().azimuths.is_averaged();
+                set.tables.iter().any(has)
+            }
         }
     }
 }

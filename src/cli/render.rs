@@ -21,6 +21,7 @@ use std::time::Duration;
 #[command(after_help = "Examples:
   vair render red-fox -o red-fox.png
   vair render polar-bear --env sky --res 1280x720 --spp 128 -o bear.png -o bear.exr
+  vair render harbor-seal --azimuths 8 -o seal.png
   vair render red-fox --table guard-small.exr --table under-small.exr -o fox.png
   vair render mink --skin sofa.obj --strands 1e6 -o sofa.png
   vair render red-fox --crop 200,150,64,64 --spp 256 -o eye.exr")]
@@ -60,6 +61,10 @@ pub(super) struct Args {
     /// Photons for each scattering table that has to be baked.
     #[arg(long, value_parser = parse_count, default_value = "3e6")]
     bake_photons: u64,
+    /// Tell so many azimuths of flat hairs apart: they glint as they turn. The photons are then those of
+    /// each. 1 averages over azimuths.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    azimuths: usize,
     /// A table to use instead of baking, packed or not: for the stations of its hair class. May repeat.
     #[arg(long, value_name = "FILE")]
     table: Vec<PathBuf>,
@@ -198,6 +203,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     };
     let bake = Settings {
         photons: args.bake_photons,
+        azimuths: args.azimuths,
         seed: args.seed,
         ..Settings::cone()
     };
@@ -336,7 +342,10 @@ fn write(args: &Args, species: &species::Species, film: &Film) -> Result<(), Fai
         args.sampler,
         args.strands,
         args.bake_photons
-    );
+    ) + &match args.azimuths {
+        1 => String::new(),
+        n => format!(" azimuths {n}"),
+    };
     let seed = args.seed.to_string();
     let provenance = [
         ("program", concat!("vair ", env!("CARGO_PKG_VERSION"))),

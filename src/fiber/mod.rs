@@ -36,7 +36,8 @@ pub use mesh::MeshPart;
 pub use optics::{Medium, Optics, Part, Region};
 pub use triangles::{MeshError, Places};
 
-use crate::species::{CuticlePattern, FiberMesh, MedullaKind, Structure};
+use crate::math::symmetry::Symmetry;
+use crate::species::{self, CuticlePattern, FiberMesh, MedullaKind, Structure};
 use bodies::Bodies;
 use cortex::Pigment;
 use glam::DVec3;
@@ -321,6 +322,22 @@ impl Fiber {
     /// designer's mesh may.
     pub fn is_mirror_symmetric(&self) -> bool {
         self.triangles.is_none()
+    }
+
+    /// The symmetry of the section, in statistics: scales, pieces of the medulla and streaks of pigment
+    /// lie at random, and a mirror image is another hair of the same kind.
+    pub fn symmetry(&self) -> Symmetry {
+        if !self.is_mirror_symmetric() {
+            return Symmetry::None;
+        }
+        match self.structure.section {
+            species::Section::ConcavoConvex { .. } | species::Section::Bean { .. } => {
+                Symmetry::MinorAxis
+            }
+            species::Section::Ellipse
+            | species::Section::Superellipse { .. }
+            | species::Section::DumbBell => Symmetry::BothAxes,
+        }
     }
 
     /// Properties of a region.

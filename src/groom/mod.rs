@@ -41,6 +41,9 @@ pub struct Groom {
     pub root_uv: Vec<Vec2>,
     /// Arc length of each strand along its control points, meters.
     pub length: Vec<f32>,
+    /// Direction that the flat side of each strand's section faces at the root: unit, along the minor
+    /// axis, across the first piece of the strand. It is carried along the strand without twisting.
+    pub normal: Vec<Vec3>,
     /// Names of the hair classes.
     pub classes: Vec<String>,
     /// Per class: factor on the natural diameter by which a thinned groom stays opaque; 1 at full
@@ -123,18 +126,21 @@ pub fn grow(
             .points
             .resize(start + per_strand * follicles.len(), Vec3::ZERO);
         groom.widths.resize(groom.points.len(), 0.0);
+        let first = groom.normal.len();
+        groom.normal.resize(first + follicles.len(), Vec3::ZERO);
         groom.points[start..]
             .par_chunks_mut(per_strand)
             .zip(groom.widths[start..].par_chunks_mut(per_strand))
+            .zip(groom.normal[first..].par_iter_mut())
             .zip(follicles.par_iter().enumerate())
             .with_min_len(1024)
-            .for_each(|((points, widths), (rank, follicle))| {
+            .for_each(|(((points, widths), normal), (rank, follicle))| {
                 if rank % 1024 == 0 {
                     progress.advance(1024.min(follicles.len() - rank) as u64);
                 }
                 let id = (class as u32) << CLASS_SHIFT | rank as u32;
                 if !cancel.is_cancelled() {
-                    grower.grow(id, &surface.root(follicle), points, widths);
+                    *normal = grower.grow(id, &surface.root(follicle), points, widths);
                 }
             });
         if cancel.is_cancelled() {

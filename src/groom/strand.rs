@@ -77,7 +77,10 @@ struct Luck {
     turn: f32,
     lift: f32,
     phase: f32,
+    /// Of the plane of the crimp.
     roll: f32,
+    /// Of the section.
+    side: f32,
 }
 
 impl<'a> Grower<'a> {
@@ -146,11 +149,19 @@ impl<'a> Grower<'a> {
             lift: (0.5 * stray * d) as f32,
             phase: rng.uniform_f32() * TAU,
             roll: rng.uniform_f32() * TAU,
+            side: (class.roll_deg.to_radians() * rng.normal_pair().0) as f32,
         }
     }
 
-    /// Writes the control points and widths of strand `id` at `root`.
-    pub(super) fn grow(&self, id: u32, root: &Root, points: &mut [Vec3], widths: &mut [f32]) {
+    /// Writes the control points and widths of strand `id` at `root`; returns the direction that its
+    /// flat side faces there.
+    pub(super) fn grow(
+        &self,
+        id: u32,
+        root: &Root,
+        points: &mut [Vec3],
+        widths: &mut [f32],
+    ) -> Vec3 {
         let class = self.class;
         let luck = self.luck(id);
         let clump = self.clumps.at(root.position);
@@ -201,6 +212,17 @@ impl<'a> Grower<'a> {
         for (width, profile) in widths.iter_mut().zip(&self.profile) {
             *width = profile * luck.width * finer;
         }
+        // Lying hair faces the sky with its flat side, upright hair looks back over its lay.
+        let along = (points[1] - points[0]).normalize_or(root.normal);
+        let across = |v: Vec3| v - along * v.dot(along);
+        let up = across(root.normal);
+        let up = if up.length_squared() > 1e-6 {
+            up
+        } else {
+            across(-root.combing)
+        };
+        let up = up.normalize_or(along.any_orthonormal_vector());
+        Quat::from_axis_angle(along, luck.side) * up
     }
 
     /// Goes from `from` one segment on. The hair leaves at the emergence angle and bends toward the

@@ -62,6 +62,7 @@ pub(super) fn fox() -> Species {
         emergence_deg: 40.0,
         bend_deg: 30.0,
         stray_deg: 6.0,
+        roll_deg: 90.0,
         crimp_mm: 0.0,
         crimp_wavelength_mm: 2.0,
         clump: 0.2,
@@ -393,4 +394,33 @@ fn what_cannot_grow_is_refused_in_words() {
         stopped.unwrap_err().blame(),
         crate::blame::Blame::Interrupted
     );
+}
+
+#[test]
+fn flat_hairs_lie_with_their_flat_side_to_the_skin() {
+    let skin = crate::skin::load("ball").unwrap();
+    for (roll_deg, flat) in [(0.0, true), (10.0, true), (90.0, false)] {
+        let mut species = fox();
+        for class in &mut species.classes {
+            class.groom.roll_deg = roll_deg;
+        }
+        let groom = grown(&skin, &species, 2000, 1);
+        assert_eq!(groom.normal.len(), groom.strands());
+        let mut up = 0.0;
+        for (i, normal) in groom.normal.iter().enumerate() {
+            let points = groom.strand(i);
+            let along = (points[1] - points[0]).normalize();
+            assert!(normal.is_normalized() && normal.dot(along).abs() < 1e-5);
+            // The skin's normal across the hair. The ball is round about the height of its center.
+            let out = points[0].normalize_or(along);
+            let out = (out - along * out.dot(along)).normalize_or(along);
+            up += normal.dot(out).abs() / groom.strands() as f32;
+        }
+        // Any way round the mean is 2 / pi; a spread of 10 degrees leaves 0.985.
+        assert_eq!(up > 0.95, flat, "{roll_deg}: {up}");
+        assert!(
+            flat || (up - 2.0 / std::f32::consts::PI).abs() < 0.03,
+            "{up}"
+        );
+    }
 }

@@ -3,5 +3,6 @@
 pub mod decay;
 pub mod frame;
 pub mod fresnel;
+pub mod symmetry;
 pub mod turn;
 pub mod unicube;

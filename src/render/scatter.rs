@@ -52,8 +52,10 @@ impl<'a> Scatter<'a> {
                 let wo = frame.transpose() * -ray.dir;
                 // Exactly in the half plane y = 0 that models expect.
                 let wo = Vec3::new(wo.x, 0.0, wo.z);
+                let azimuth = azimuth_of(frame.x_axis, hit.side, hit.tangent);
+                let material = &scene.materials[hit.class as usize];
                 let kind = Kind::Strand {
-                    bsdf: scene.materials[hit.class as usize].at(hit.at, hit.tip_mm, wo, u),
+                    bsdf: material.at(hit.at, hit.tip_mm, wo, azimuth, u),
                     frame,
                     hit: *hit,
                     strands: &scene.strands,
@@ -157,6 +159,14 @@ impl<'a> Scatter<'a> {
             Kind::Matte { frame, .. } => frame.z_axis,
         }
     }
+}
+
+/// Azimuth of a direction around a tangent, radians from `side`; 0 where there is no side.
+fn azimuth_of(dir: Vec3, side: Vec3, tangent: Vec3) -> f32 {
+    if side == Vec3::ZERO {
+        return 0.0;
+    }
+    dir.dot(tangent.cross(side)).atan2(dir.dot(side))
 }
 
 fn matte(color: Rgb, normal: Vec3, facing: Vec3) -> Kind<'static> {

@@ -178,7 +178,10 @@ impl Scene {
                 given: parts.materials.len(),
             });
         }
-        let strands = Strands::build(parts.groom)?;
+        let mut strands = Strands::build(parts.groom)?;
+        if parts.materials.iter().any(HairMaterial::has_azimuths) {
+            strands.carry_sides(parts.groom);
+        }
         let surface = match parts.skin {
             Some((skin, color)) => Some(Surface::build(skin, color)?),
             None => None,

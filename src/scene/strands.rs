@@ -5,7 +5,7 @@ use super::flatten::flatten;
 use super::ribbon::Segment;
 use crate::accel::{Accel, LIMIT, Ray, hash_bits};
 use crate::groom::Groom;
-use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{Quat, Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
 /// Scene units (millimeters) in a meter.
@@ -31,6 +31,8 @@ pub struct StrandHit {
     pub tip_mm: f32,
     /// Unit tangent, root to tip, running smoothly over joints.
     pub tangent: Vec3,
+    /// Unit, across the tangent: the major axis of the section. Zero if no sides are carried.
+    pub side: Vec3,
 }
 
 /// Where a scattered ray starts, so that it does not meet the strand it is leaving.
@@ -62,6 +64,8 @@ pub struct Strands {
     /// Segments in traversal order and the joint each starts at.
     segments: Vec<Segment>,
     first_joint: Vec<u32>,
+    /// Major axis of the section at each joint; empty if nobody asks for it.
+    sides: Vec<Vec3>,
     accel: Accel,
 }
 
@@ -115,8 +119,44 @@ impl Strands {
             strands,
             segments,
             first_joint,
+            sides: Vec::new(),
             accel,
         })
+    }
+
+    /// Carries the sides of the strands along them, for tables that tell azimuths apart: from the root
+    /// on they turn as the tangent does and no further (parallel transport). Strands of which the groom
+    /// does not say how they lie get any side.
+    pub fn carry_sides(&mut self, groom: &Groom) {
+        let mut sides = vec![Vec3::ZERO; self.joints.len()];
+        let mut last: Option<(u32, Vec3, Vec3)> = None;
+        for (joint, side) in sides.iter_mut().enumerate() {
+            let strand = self.strand_of[joint];
+            let tangent = self.tangent_at_joint(joint);
+            let carried = match last {
+                Some((of, before, side)) if of == strand => {
+                    Quat::from_rotation_arc(before, tangent) * side
+                }
+                _ => {
+                    let normal = groom.normal.get(strand as usize).copied();
+                    normal.unwrap_or_default().cross(tangent)
+                }
+            };
+            *side = across(carried, tangent);
+            last = Some((strand, tangent, *side));
+        }
+        self.sides = sides;
+    }
+
+    /// Unit tangent at a joint.
+    fn tangent_at_joint(&self, joint: usize) -> Vec3 {
+        let next = self.strand_of.get(joint + 1);
+        if next == Some(&self.strand_of[joint]) {
+            self.tangent(joint, 0.0)
+        } else {
+            // The last of its strand, which has two at least.
+            self.tangent(joint - 1, 1.0)
+        }
     }
 
     /// Number of segments that rays are tested against.
@@ -184,6 +224,11 @@ impl Strands {
             class, length_mm, ..
         } = self.strands[strand as usize];
         let at = self.at[joint] + along * (self.at[joint + 1] - self.at[joint]);
+        let tangent = self.tangent(joint, along);
+        let side = match self.sides.get(joint..joint + 2) {
+            Some(&[a, b]) => across(a.lerp(b, along), tangent),
+            _ => Vec3::ZERO,
+        };
         Some(StrandHit {
             t,
             segment: joint as u32,
@@ -191,7 +236,8 @@ impl Strands {
             class,
             at,
             tip_mm: (1.0 - at) * length_mm,
-            tangent: self.tangent(joint, along),
+            tangent,
+            side,
         })
     }
 
@@ -231,6 +277,13 @@ impl Strands {
         };
         before.lerp(after, along).normalize_or(own)
     }
+}
+
+/// The part of a vector across a unit tangent, as a unit vector; any such where there is none.
+fn across(v: Vec3, tangent: Vec3) -> Vec3 {
+    let part = v - tangent * v.dot(tangent);
+    part.try_normalize()
+        .unwrap_or_else(|| tangent.any_orthonormal_vector())
 }
 
 /// The joints of some strands.

@@ -281,3 +281,56 @@ fn environment_files_round_trip_and_bad_ones_are_named() {
         assert!(load_environment(&path("cut.exr")).is_err());
     }
 }
+
+/// Along a helix a frame that does not twist turns about the tangent by minus the torsion (Bishop 1975).
+#[test]
+fn sides_are_carried_without_twisting() {
+    let (radius, rise, turns) = (2e-3f32, 1e-3f32, 1.5f32);
+    let n = 120;
+    let angle = |i: usize| std::f32::consts::TAU * turns * i as f32 / n as f32;
+    let points: Vec<Vec3> = (0..=n)
+        .map(|i| {
+            let (sin, cos) = angle(i).sin_cos();
+            Vec3::new(radius * cos, radius * sin, rise * angle(i))
+        })
+        .collect();
+    let tangent = |i: usize| {
+        let (sin, cos) = angle(i).sin_cos();
+        Vec3::new(-radius * sin, radius * cos, rise).normalize()
+    };
+    // Frenet's normal points to the axis.
+    let inward = |i: usize| {
+        let (sin, cos) = angle(i).sin_cos();
+        Vec3::new(-cos, -sin, 0.0)
+    };
+    let groom = Groom {
+        widths: vec![2e-5; points.len()],
+        offsets: vec![0, points.len() as u32],
+        normal: vec![inward(0)],
+        points: points.clone(),
+        class: vec![0],
+        ..Groom::default()
+    };
+    let mut strands = Strands::build(&groom).unwrap();
+    let meet = |strands: &Strands, i: usize| {
+        let dir = -Vec3::Z.cross(tangent(i)).normalize();
+        let origin = points[i] * 1e3 - 0.5 * dir;
+        strands.closest(&Ray { origin, dir }, 1.0, None).unwrap()
+    };
+    assert_eq!(meet(&strands, 60).side, Vec3::ZERO);
+    strands.carry_sides(&groom);
+    let torsion = rise / radius.hypot(rise);
+    for i in [3, 40, 77, 117] {
+        let hit = meet(&strands, i);
+        assert!(hit.side.is_normalized() && hit.side.dot(hit.tangent).abs() < 1e-5);
+        // The major axis: the normal of the groom is the minor one.
+        let minor = hit.tangent.cross(hit.side);
+        let frenet = inward(i);
+        let found = minor
+            .dot(hit.tangent.cross(frenet))
+            .atan2(minor.dot(frenet));
+        let off = found + torsion * angle(i);
+        let off = off.sin().atan2(off.cos());
+        assert!(off.abs() < 0.03, "{i}: {found}, off by {off}");
+    }
+}

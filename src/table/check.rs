@@ -1,6 +1,7 @@
 //! The rules that every table keeps, in memory and in files.
 
-use super::{Ledger, Nodes, ScatterMaps, StructureTable, TableError};
+use super::{Azimuths, Ledger, Mode, Nodes, ScatterMaps, StructureTable, TableError};
+use crate::math::symmetry::Symmetry;
 use std::f64::consts::FRAC_PI_2;
 
 /// Most nodes of a table.
@@ -123,9 +124,19 @@ fn check_shape(nodes: &Nodes, res: usize, channels: usize) -> Result<(), TableEr
         samples <= MAX_SAMPLES,
         "{samples} numbers in all; {MAX_SAMPLES} are allowed"
     );
+    let Azimuths { count, symmetry } = nodes.azimuths;
+    ensure!(
+        count == 1 || nodes.mode == Mode::Cone,
+        "{count} azimuths in paper mode, which averages them"
+    );
+    ensure!(
+        count > 1 || symmetry == Symmetry::None,
+        "symmetry without azimuths"
+    );
+    let bins = nodes.inclinations();
     ensure!(
         nodes.edges.len() == bins + 1,
-        "{} bin boundaries for {bins} nodes",
+        "{} bin boundaries for {bins} bins",
         nodes.edges.len()
     );
     let near = |a: f64, b: f64| (a - b).abs() < 1e-9;

@@ -3,6 +3,7 @@
 //! A [`StructureTable`] holds one map per node (inclination of the query direction) and absorption
 //! level; dyeing it with a pigment gives [`ScatterMaps`] of linear RGB.
 
+mod azimuths;
 mod check;
 mod compare;
 mod dye;
@@ -15,13 +16,16 @@ mod nodes;
 mod pack;
 mod plot;
 mod scatter;
+mod slice;
 mod structure;
 mod taps;
 mod undyed;
 
-pub use self::exr::{FORMAT, TableFile};
+pub use self::exr::{FORMAT, FORMAT_AZIMUTHS, TableFile};
+pub use azimuths::{AzimuthBin, Azimuths};
 pub use compare::{
-    BinDifference, ChannelComparison, Comparison, Difference, THETA_MAX_DEG, TableRef, compare,
+    AzimuthDifference, BinDifference, ChannelComparison, Comparison, Difference, THETA_MAX_DEG,
+    TableRef, compare,
 };
 pub use error::TableError;
 pub use fit::{Fit, LobeFit, Model};

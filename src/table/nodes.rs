@@ -1,5 +1,6 @@
-//! The inclinations at which a table holds maps.
+//! The inclinations, and azimuths where they matter, at which a table holds maps.
 
+use super::Azimuths;
 use crate::math::frame;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -18,6 +19,9 @@ pub enum Mode {
 
 /// The nodes of a table: bin `j` covers inclinations `edges[j] .. edges[j + 1]`, ascending, and is
 /// represented by `centers[j]`. Radians.
+///
+/// Each bin of azimuth has all inclinations: node `n` is inclination `n % centers.len()` of azimuth
+/// `n / centers.len()`. Nearly all tables have one bin for all azimuths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nodes {
     /// How the nodes are used.
@@ -26,6 +30,8 @@ pub struct Nodes {
     pub edges: Vec<f64>,
     /// The inclination that stands for each bin.
     pub centers: Vec<f64>,
+    /// Bins of the query's azimuth.
+    pub azimuths: Azimuths,
 }
 
 impl Nodes {
@@ -46,12 +52,39 @@ impl Nodes {
             mode,
             edges,
             centers,
+            azimuths: Azimuths::AVERAGED,
         }
     }
 
-    /// Number of nodes.
+    /// The same inclinations at each of some azimuths.
+    pub fn at_azimuths(self, azimuths: Azimuths) -> Self {
+        Self { azimuths, ..self }
+    }
+
+    /// Number of nodes, of all azimuths.
     pub fn len(&self) -> usize {
+        self.centers.len() * self.azimuths.count
+    }
+
+    /// Number of bins of inclination.
+    pub fn inclinations(&self) -> usize {
         self.centers.len()
+    }
+
+    /// The inclination of a node, radians.
+    pub fn theta(&self, node: usize) -> f64 {
+        self.centers[node % self.centers.len()]
+    }
+
+    /// The inclinations that a node covers, from and to, radians.
+    pub fn theta_range(&self, node: usize) -> [f64; 2] {
+        let bin = node % self.centers.len();
+        [self.edges[bin], self.edges[bin + 1]]
+    }
+
+    /// The bin of azimuth of a node.
+    pub fn azimuth_bin(&self, node: usize) -> usize {
+        node / self.centers.len()
     }
 
     /// Never true of a valid table.
@@ -68,18 +101,22 @@ impl Nodes {
         }
     }
 
-    /// The bin that holds inclination `theta`.
+    /// The bin of inclination that holds `theta`.
     pub fn bin(&self, theta: f64) -> usize {
         match self.mode {
-            Mode::Paper => self.len() - 1 - frame::paper_bin(theta, self.len()),
+            Mode::Paper => {
+                let bins = self.inclinations();
+                bins - 1 - frame::paper_bin(theta, bins)
+            }
             Mode::Cone => {
-                let above = self.edges[1..self.len()].partition_point(|&e| e <= theta);
-                above.min(self.len() - 1)
+                let last = self.inclinations() - 1;
+                let above = self.edges[1..=last].partition_point(|&e| e <= theta);
+                above.min(last)
             }
         }
     }
 
-    /// The two nodes between which a look-up at `theta` interpolates, and the share of the second.
+    /// The two inclinations between which a look-up at `theta` interpolates, and the share of the second.
     /// Paper mode does not interpolate: the share is 0.
     pub fn bracket(&self, theta: f64) -> (usize, usize, f64) {
         if self.mode == Mode::Paper {
@@ -90,7 +127,7 @@ impl Nodes {
         if above == 0 {
             return (0, 0, 0.0);
         }
-        if above == self.len() {
+        if above == self.inclinations() {
             return (above - 1, above - 1, 0.0);
         }
         let (lo, hi) = (self.centers[above - 1], self.centers[above]);

@@ -4,7 +4,8 @@
 //! `F_t / (d omega / d area)`. A look-up blends the two nodes that bracket the query inclination,
 //! each in its own cone frame (see [`Mode::Cone`]). Sampling descends a pyramid of the mean of the
 //! channels, so `pdf = mean(density) / mean(albedo)` holds identically and a gray table has
-//! throughput exactly `albedo`.
+//! throughput exactly `albedo`. Where azimuths are told apart, one of the two bins that bracket the
+//! query's is drawn by chance: on average that is the blend, at half of its cost.
 
 use super::{Mode, Nodes, ScatterMaps};
 use crate::color::Rgb;
@@ -33,6 +34,8 @@ pub struct Lobe<'a> {
     table: &'a ScatterTable,
     parts: [Part; 2],
     albedo: Rgb,
+    /// -1 where the map is the mirror image of what is asked for, else 1.
+    flip: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -90,17 +93,29 @@ impl ScatterTable {
         self.cube.res()
     }
 
-    /// The scattering for a query direction, strand frame (`wo.y = 0`).
+    /// The scattering for a query direction, strand frame (`wo.y = 0`), of a table that averages over
+    /// azimuths; of others that at azimuth 0.
     pub fn lobe(&self, wo: Vec3) -> Lobe<'_> {
+        self.lobe_at(wo, 0.0, 1.0)
+    }
+
+    /// The scattering for a query direction, strand frame (`wo.y = 0`).
+    ///
+    /// * `azimuth`: of the query, radians around the fiber from the major axis of its section.
+    /// * `u`: a number in `[0, 1]` that chooses between bins of azimuth; of no effect without.
+    pub fn lobe_at(&self, wo: Vec3, azimuth: f32, u: f32) -> Lobe<'_> {
         let theta = f64::from(wo.z.atan2(wo.x.hypot(wo.y)));
+        let (first, second, share) = self.nodes.azimuths.bracket(f64::from(azimuth));
+        let side = if f64::from(u) < share { second } else { first };
+        let of_side = side.bin * self.nodes.inclinations();
         let (a, b, f) = self.nodes.bracket(theta);
-        let part = |node: usize, weight: f64| {
+        let part = |bin: usize, weight: f64| {
             let (sin, cos) = match self.nodes.mode {
                 Mode::Paper => (0.0, 1.0),
-                Mode::Cone => (theta - self.nodes.centers[node]).sin_cos(),
+                Mode::Cone => (theta - self.nodes.centers[bin]).sin_cos(),
             };
             Part {
-                node,
+                node: of_side + bin,
                 weight: weight as f32,
                 sin,
                 cos,
@@ -112,6 +127,7 @@ impl ScatterTable {
             table: self,
             parts,
             albedo,
+            flip: if side.mirrored { -1.0 } else { 1.0 },
         }
     }
 
@@ -188,7 +204,8 @@ impl Lobe<'_> {
 
     /// `S(wi, wo) cos(theta_i)` per steradian.
     pub fn density(&self, wi: Vec3) -> Rgb {
-        let wi = wi.as_dvec3();
+        let mut wi = wi.as_dvec3();
+        wi.y *= self.flip;
         self.parts
             .iter()
             .map(|p| self.table.part_density(p, wi) * p.weight)
@@ -213,11 +230,9 @@ impl Lobe<'_> {
         // looked up next door, where it may be zero.
         let inside = |v: f32| f64::from(v.clamp(2e-5, 1.0 - 2e-5));
         let (w, _) = self.table.cube.direction(texel, inside(a), inside(b));
-        Some(
-            frame::shift_inclination(w, -part.sin, part.cos)
-                .as_vec3()
-                .normalize(),
-        )
+        let mut wi = frame::shift_inclination(w, -part.sin, part.cos);
+        wi.y *= self.flip;
+        Some(wi.as_vec3().normalize())
     }
 }
 
@@ -251,7 +266,9 @@ impl From<ScatterMaps> for ScatterTable {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::symmetry::Symmetry;
     use crate::sampling::Rng;
+    use crate::table::{Azimuths, Ledger, Provenance};
 
     /// A lopsided table with empty regions and colored lobes.
     fn lumpy(mode: Mode) -> ScatterTable {
@@ -325,5 +342,46 @@ mod tests {
         let table = ScatterTable::new(nodes, 8, vec![[0.0; 3]; 4 * 6 * 64]);
         assert!(table.lobe(wo(0.2)).sample([0.3, 0.4, 0.5]).is_none());
         assert_eq!(table.lobe(wo(0.2)).density(Vec3::X), Rgb::ZERO);
+    }
+
+    /// Over all azimuths a table that tells them apart is its own mean.
+    #[test]
+    fn azimuths_average_to_the_averaged_table() {
+        for symmetry in [Symmetry::None, Symmetry::MinorAxis, Symmetry::BothAxes] {
+            let azimuths = Azimuths { count: 3, symmetry };
+            let nodes = Nodes::new(Mode::Cone, 4).at_azimuths(azimuths);
+            let mut rng = Rng::new(8, 1);
+            let texels = 6 * 4 * 4;
+            let rgb = (0..nodes.len() * texels)
+                .map(|_| std::array::from_fn(|_| rng.uniform_f32() / texels as f32))
+                .collect();
+            let maps = ScatterMaps {
+                res: 4,
+                rgb,
+                error: vec![[0.1; 3]; nodes.len() * texels],
+                absorption_per_um: [0.0; 3],
+                radius_um: 1.0,
+                ledger: vec![Ledger::default(); nodes.len()],
+                provenance: Provenance::default(),
+                nodes,
+            };
+            let averaged = ScatterTable::from(maps.averaged().unwrap());
+            let table = ScatterTable::from(maps);
+            let wo = wo(0.4);
+            for wi in [Vec3::new(0.3, 0.8, -0.2), Vec3::new(-0.9, -0.3, 0.1)] {
+                let wi = wi.normalize();
+                let (mut mean, n) = (Rgb::ZERO, 240);
+                for i in 0..n {
+                    let azimuth = 2.0 * std::f32::consts::PI * (i as f32 + 0.5) / n as f32;
+                    for j in 0..200 {
+                        let lobe = table.lobe_at(wo, azimuth, (j as f32 + 0.5) / 200.0);
+                        mean += lobe.density(wi) / (n * 200) as f32;
+                    }
+                }
+                let expected = averaged.lobe(wo).density(wi);
+                let off = (mean / expected - 1.0).abs().max_element();
+                assert!(off < 1e-3, "{symmetry:?}: {mean} for {expected}");
+            }
+        }
     }
 }

@@ -51,7 +51,7 @@ pub(super) struct Reconstruction {
     scales: Scales,
     /// Solid angle of every cell's texel.
     solid_angle: Vec<f64>,
-    /// Where nodes meet; in paper mode they do not.
+    /// Where nodes meet; in paper mode and with several azimuths they do not.
     joint: Option<(Lattice, Pyramid)>,
 }
 
@@ -83,7 +83,8 @@ struct All {
 impl Reconstruction {
     /// * `folded`: maps are averaged with their mirror images.
     pub(super) fn new(cube: &Unicube, nodes: &Nodes, folded: bool) -> Self {
-        let joint = nodes.mode == Mode::Cone;
+        // With several azimuths reciprocity is between maps of different ones.
+        let joint = nodes.mode == Mode::Cone && nodes.azimuths.count == 1;
         let scales = Scales::new(
             cube,
             folded,

@@ -24,6 +24,7 @@ use values::{parse_bytes, parse_share, parse_time};
   vair bake red-fox --time 10s -o fox.exr
   vair bake polar-bear --target-error 2% --photons 1e9 -o bear.exr
   vair bake glass-cylinder --set structure.ior=1.55 --mode paper --photons 1e8 -o glass.exr
+  vair bake harbor-seal --azimuths 8 --photons 1e8 -o seal.exr
   vair bake my-cat.toml --class under --photons 1e7 -o cat-under.exr
   vair bake human --photons 1e7 --photon-seed 1 -o human-again.exr
   vair bake human --photons 1e10 --shard 2/3 -o human-2.safetensors
@@ -69,6 +70,9 @@ pub(super) struct Args {
     /// Inclination nodes.
     #[arg(long, default_value_t = 16)]
     bins: usize,
+    /// Bins of the query's azimuth around the section, for flat hairs: 8, say. 1 averages over azimuths.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    azimuths: usize,
     /// Texels along a face edge, a power of two.
     #[arg(long, default_value_t = 64)]
     face: usize,
@@ -147,11 +151,12 @@ fn settings(args: &Args) -> Settings {
     let photons = match (args.photons, args.target_error, args.time) {
         (Some(photons), ..) => photons,
         (None, None, None) => base.photons,
-        _ => Settings::most_photons(args.bins),
+        _ => Settings::most_photons(args.bins.saturating_mul(args.azimuths)),
     };
     Settings {
         photons,
         bins: args.bins,
+        azimuths: args.azimuths,
         face: args.face,
         max_events: args.max_events.unwrap_or(base.max_events),
         reconstruct: base.reconstruct && !args.raw,

@@ -154,8 +154,16 @@ pub(super) fn growth(groom: &ClassGroom) -> String {
             short(groom.clump_mm)
         ),
     };
+    let side = if groom.roll_deg < 90.0 {
+        format!(
+            ", flat side to the skin give or take {} degrees",
+            short(groom.roll_deg)
+        )
+    } else {
+        String::new()
+    };
     format!(
-        "leaves the skin at {} degrees and bends by {}; {crimp}{stalk}; {locks}.",
+        "leaves the skin at {} degrees and bends by {}{side}; {crimp}{stalk}; {locks}.",
         short(groom.emergence_deg),
         short(groom.bend_deg)
     )

@@ -1,6 +1,7 @@
 //! `vair table compare`: how far apart two tables are.
 
 use super::plot::parse_size;
+use super::{at_azimuth, averaged};
 use crate::cli::stdout::{print, print_json};
 use crate::cli::{Console, Failure};
 use crate::io::check_writable;
@@ -43,6 +44,10 @@ pub(super) struct Args {
         allow_negative_numbers = true
     )]
     incidence: f64,
+    /// Compare at this azimuth of the query only, degrees from the major axis of the section. The picture
+    /// shows the mean over azimuths without it.
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    azimuth: Option<f64>,
     /// Absorption level or color channel of the picture, counted from 0.
     #[arg(long, value_name = "K", default_value_t = 0)]
     channel: usize,
@@ -55,7 +60,14 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     if let Some(output) = &args.output {
         check_writable(output)?;
     }
-    let (a, b) = (TableFile::read(&args.a)?, TableFile::read(&args.b)?);
+    let (mut a, mut b) = (TableFile::read(&args.a)?, TableFile::read(&args.b)?);
+    if let Some(degrees) = args.azimuth {
+        if a.azimuths().is_averaged() && b.azimuths().is_averaged() {
+            return Err(averaged());
+        }
+        // A table that averages over azimuths is the same at all.
+        (a, b) = (at_azimuth(a, degrees), at_azimuth(b, degrees));
+    }
     let compared = compare(&a, &b, args.theta_max)?;
     if let Some(why) = not_independent(a.provenance(), b.provenance()) {
         console.say(format_args!("note: {why}"));
@@ -65,6 +77,7 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
             let name = path.file_name().unwrap_or_default();
             name.to_string_lossy().into_owned()
         };
+        let (a, b) = (a.averaged()?, b.averaged()?);
         let plot = DifferencePlot {
             tables: [(&a).into(), (&b).into()],
             names: [name(&args.a), name(&args.b)],
@@ -118,6 +131,13 @@ fn json(compared: &Comparison) -> Value {
             json
         });
         json["bins"] = bins.collect();
+        let azimuths = c.azimuths.iter().map(|side| {
+            let mut json = difference_json(&side.difference);
+            json["azimuth_deg"] = json!(side.azimuth_deg);
+            json["albedo"] = json!(side.albedo);
+            json
+        });
+        json["azimuths"] = azimuths.collect();
         json
     });
     json!({
@@ -170,6 +190,27 @@ fn text(compared: &Comparison) -> String {
     }
     if let Some(c) = compared.headline() {
         out.push_str(&bins(c));
+        if !c.azimuths.is_empty() {
+            out.push_str(&azimuths(c));
+        }
+    }
+    out
+}
+
+fn azimuths(channel: &ChannelComparison) -> String {
+    let mut out = format!(
+        "\n{} by azimuth\n  azimuth      error    noise  debiased  albedo   albedo of the reference\n",
+        channel.name
+    );
+    for side in &channel.azimuths {
+        let _ = writeln!(
+            out,
+            "{:>7.2}     {}   {:.5}  {:.5}",
+            side.azimuth_deg,
+            percents(&side.difference),
+            side.albedo[0],
+            side.albedo[1]
+        );
     }
     out
 }

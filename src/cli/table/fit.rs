@@ -48,7 +48,8 @@ enum ModelArg {
 
 pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     let pigment = args.pigment.absorption_per_um()?;
-    let mut table = TableFile::read(&args.file)?;
+    // Fits are of round hairs.
+    let mut table = TableFile::read(&args.file)?.averaged()?;
     if let TableFile::Scatter(_) = table
         && (pigment.is_some() || !args.level.is_empty())
     {

@@ -2,7 +2,7 @@
 
 use crate::cli::Failure;
 use crate::cli::stdout::{print, print_json};
-use crate::table::{FORMAT, Ledger, Mode, Nodes, PHOTON, Provenance, TableFile};
+use crate::table::{FORMAT, FORMAT_AZIMUTHS, Ledger, Mode, Nodes, PHOTON, Provenance, TableFile};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -100,6 +100,20 @@ impl<'a> Summary<'a> {
         (0..n).map(move |bin| (bin, self.nodes.node_of_part(bin)))
     }
 
+    fn format(&self) -> i32 {
+        match self.nodes.azimuths.is_averaged() {
+            true => FORMAT,
+            false => FORMAT_AZIMUTHS,
+        }
+    }
+
+    /// Bounds and middle of a node's azimuths, degrees from the major axis, if there are several.
+    fn azimuth_deg(&self, node: usize) -> Option<[f64; 3]> {
+        let azimuths = self.nodes.azimuths;
+        let range = azimuths.range(self.nodes.azimuth_bin(node));
+        (!azimuths.is_averaged()).then(|| range.map(f64::to_degrees))
+    }
+
     fn photons(&self) -> f64 {
         let emitted = self.ledger.iter().map(|l| u128::from(l[0].emitted));
         emitted.sum::<u128>() as f64 / PHOTON as f64
@@ -112,7 +126,8 @@ impl<'a> Summary<'a> {
             .map(|(bin, node)| self.bin_json(bin, node))
             .collect();
         json!({
-            "format": FORMAT,
+            "format": self.format(),
+            "azimuths": self.nodes.azimuths.count,
             "kind": self.kind,
             "mode": self.mode(),
             "warp": "unicube",
@@ -140,12 +155,25 @@ impl<'a> Summary<'a> {
     fn bin_json(&self, bin: usize, node: usize) -> Value {
         let nodes = self.nodes;
         let clear = &self.ledger[node][0];
+        let [from, to] = nodes.theta_range(node);
+        let side = self.azimuth_deg(node);
+        let part = match side {
+            None => format!("bin{bin:02}"),
+            Some(_) => format!(
+                "azimuth{:02}-bin{:02}",
+                nodes.azimuth_bin(bin),
+                bin % nodes.inclinations()
+            ),
+        };
         json!({
             "bin": bin,
-            "part": format!("bin{bin:02}"),
-            "theta_deg": nodes.centers[node].to_degrees(),
-            "theta_from_deg": nodes.edges[node].to_degrees(),
-            "theta_to_deg": nodes.edges[node + 1].to_degrees(),
+            "part": part,
+            "theta_deg": nodes.theta(node).to_degrees(),
+            "theta_from_deg": from.to_degrees(),
+            "theta_to_deg": to.to_degrees(),
+            "azimuth_deg": side.map(|[_, _, middle]| middle),
+            "azimuth_from_deg": side.map(|[from, ..]| from),
+            "azimuth_to_deg": side.map(|[_, to, _]| to),
             "photons": clear.emitted as f64 / PHOTON as f64,
             "albedo": self.albedo[node],
             "truncated": share(clear.truncated, clear.emitted),
@@ -162,7 +190,12 @@ impl<'a> Summary<'a> {
         };
         line(
             "table",
-            format!("{}, {} mode, format {FORMAT}", self.kind, self.mode()),
+            format!(
+                "{}, {} mode, format {}",
+                self.kind,
+                self.mode(),
+                self.format()
+            ),
         );
         let class = if p.class.is_empty() { "-" } else { &p.class };
         line(
@@ -174,7 +207,10 @@ impl<'a> Summary<'a> {
             "maps",
             format!(
                 "{} bins of 6 x {res} x {res} texels, channels {}",
-                self.nodes.len(),
+                match self.nodes.azimuths.count {
+                    1 => self.nodes.len().to_string(),
+                    count => format!("{count} azimuths, {}", self.nodes.inclinations()),
+                },
                 self.channels.join(" "),
                 res = self.res
             ),
@@ -212,20 +248,29 @@ impl<'a> Summary<'a> {
 
     fn bin_table(&self) -> String {
         let shown = shown_channels(self.channels.len());
-        let mut out =
-            String::from("bin   theta        from .. to     photons  truncated       lost");
+        let has_sides = !self.nodes.azimuths.is_averaged();
+        let mut out = String::from("bin");
+        if has_sides {
+            out.push_str("      azimuth");
+        }
+        out.push_str("   theta        from .. to     photons  truncated       lost");
         for &c in &shown {
             let _ = write!(out, "  {:>7}", self.channels[c]);
         }
         out.push('\n');
         for (bin, node) in self.bins() {
             let clear = &self.ledger[node][0];
+            let [from, to] = self.nodes.theta_range(node);
+            let _ = write!(out, "{bin:>3}");
+            if let Some([from, to, _]) = self.azimuth_deg(node) {
+                let _ = write!(out, " {from:>5.1} .. {to:>3.0}");
+            }
             let _ = write!(
                 out,
-                "{bin:>3} {:>7.2} {:>8.2} .. {:>6.2} {:>11} {:>10} {:>10}",
-                self.nodes.centers[node].to_degrees(),
-                self.nodes.edges[node].to_degrees(),
-                self.nodes.edges[node + 1].to_degrees(),
+                " {:>7.2} {:>8.2} .. {:>6.2} {:>11} {:>10} {:>10}",
+                self.nodes.theta(node).to_degrees(),
+                from.to_degrees(),
+                to.to_degrees(),
                 clear.emitted / PHOTON,
                 percent(share(clear.truncated, clear.emitted)),
                 percent(share(clear.lost, clear.emitted)),

@@ -8,7 +8,8 @@ mod pack;
 mod plot;
 
 use super::{Console, Failure};
-
+use crate::blame::Blame;
+use crate::table::TableFile;
 use clap::Subcommand;
 
 /// Options of `vair table`.
@@ -32,6 +33,21 @@ enum Command {
     Fit(fit::Args),
     /// Draw the scattering for one incidence: sphere map, lobe, albedo.
     Plot(plot::Args),
+}
+
+/// The table at the bin that holds an azimuth, degrees; the table itself if it has but one.
+fn at_azimuth(table: TableFile, degrees: f64) -> TableFile {
+    let bin = table.azimuths().bin(degrees.to_radians()).bin;
+    table.at_azimuth(bin)
+}
+
+/// An azimuth was asked for of a table that has none.
+fn averaged() -> Failure {
+    Failure::with_help(
+        Blame::Input,
+        "the table averages over azimuths",
+        "leave out --azimuth, or bake with --azimuths",
+    )
 }
 
 /// Runs `vair table`.

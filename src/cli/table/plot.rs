@@ -1,6 +1,7 @@
 //! `vair table plot`: the scattering function as a picture.
 
 use super::dye::Pigment;
+use super::{at_azimuth, averaged};
 use crate::blame::Blame;
 use crate::cli::{Console, Failure};
 use crate::io::check_writable;
@@ -29,6 +30,10 @@ pub(super) struct Args {
         allow_negative_numbers = true
     )]
     incidence: f64,
+    /// Azimuth of the query direction in degrees from the major axis of the section, of a table that has
+    /// azimuths; the mean over all if not given.
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    azimuth: Option<f64>,
     /// Width and height of the picture in pixels.
     #[arg(long, value_name = "WxH", default_value = "1600x1000", value_parser = parse_size)]
     size: (usize, usize),
@@ -42,7 +47,21 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     check_writable(&args.output)?;
     let pigment = args.pigment.absorption_per_um()?;
-    let subject = match TableFile::read(&args.file)? {
+    let table = TableFile::read(&args.file)?;
+    let azimuths = table.azimuths();
+    let (table, side) = match args.azimuth {
+        None => (table.averaged()?, String::new()),
+        Some(_) if azimuths.is_averaged() => return Err(averaged()),
+        Some(degrees) => {
+            let [from, to, _] = azimuths.range(azimuths.bin(degrees.to_radians()).bin);
+            let [from, to] = [from, to].map(f64::to_degrees);
+            (
+                at_azimuth(table, degrees),
+                format!(", azimuth {from}° to {to}°"),
+            )
+        }
+    };
+    let subject = match table {
         TableFile::Scatter(maps) => {
             if args.level.is_some() || pigment.is_some() {
                 return Err(Failure::new(
@@ -68,7 +87,11 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         gray: subject.gray,
         closed_form: closed_form(maps),
         incidence_deg: args.incidence,
-        title: format!("{}, incidence {}°", name(&maps.provenance), args.incidence),
+        title: format!(
+            "{}, incidence {}°{side}",
+            name(&maps.provenance),
+            args.incidence
+        ),
         subtitle: format!(
             "{}; {mode} mode, {} x 6 x {res} x {res}, {photons:e} photons",
             subject.color,

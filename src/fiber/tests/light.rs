@@ -1,7 +1,7 @@
 //! Light through a medulla: the closed form of its mean path, and a medium that stands for bubbles.
 
 use super::super::{Fiber, medulla};
-use crate::bake::{End, Photon, fly};
+use crate::bake::{End, Photon, Sides, fly};
 use crate::sampling::Rng;
 use crate::species::{MedullaKind, Structure};
 
@@ -20,6 +20,7 @@ fn paths(fiber: &Fiber, count: u64) -> Vec<(f64, f64)> {
             seed: 1,
             stream: i,
             sin_range: (bin, bin + 0.125),
+            sides: Sides::ALL,
         };
         let flight = fly(fiber, &photon, 100_000);
         assert!(!matches!(flight.end, End::Lost | End::Truncated));

@@ -25,6 +25,7 @@ impl Reader<'_> {
             emergence_deg: number(table, "emergence_deg")?,
             bend_deg: number(table, "bend_deg")?,
             stray_deg: number(table, "stray_deg")?,
+            roll_deg: number(table, "roll_deg").unwrap_or(90.0),
             crimp_mm: number(table, "crimp_mm")?,
             crimp_wavelength_mm: number(table, "crimp_wavelength_mm")?,
             clump: number(table, "clump")?,

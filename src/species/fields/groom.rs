@@ -63,6 +63,12 @@ pub(super) static GROOM: Shape = Shape {
             Kind::Number(number(0.0, 90.0, "degrees")),
             "Random deviation of direction.",
         ),
+        Field::optional(
+            "roll_deg",
+            Kind::Number(number(0.0, 90.0, "degrees")),
+            "Random roll of the hair about its axis, from lying with the flat side of its section to the \
+             skin: standard deviation. 90, any way, when left out; of effect in tables with azimuths.",
+        ),
         Field::required(
             "crimp_mm",
             Kind::Number(number(0.0, 20.0, "mm")),

@@ -136,6 +136,9 @@ pub struct ClassGroom {
     pub bend_deg: f64,
     /// Random deviation of direction, degrees.
     pub stray_deg: f64,
+    /// How far the flat side of the section is turned from lying to the skin: standard deviation over
+    /// the hairs, degrees, 0 all flat .. 90 any way.
+    pub roll_deg: f64,
     /// Amplitude of the crimp, millimeters, 0 straight.
     pub crimp_mm: f64,
     /// Wavelength of the crimp, millimeters.

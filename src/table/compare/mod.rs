@@ -13,8 +13,10 @@
 //! variances are taken out again, of the difference and of the reference's square.
 //!
 //! Tables of the same nodes and faces are compared texel by texel; others as the renderer sees them,
-//! by look-ups at a common grid of directions.
+//! by look-ups at a common grid of directions. Several azimuths count alike; a table that averages over
+//! them is held against each.
 
+mod azimuths;
 mod measure;
 mod side;
 #[cfg(test)]
@@ -24,7 +26,8 @@ pub(super) use side::Side;
 pub use side::TableRef;
 
 use super::TableError;
-use measure::Sums;
+use azimuths::Slice;
+use measure::{Row, Sums};
 
 /// Inclination limit that is usual here, degrees: beyond it S grows without bound toward grazing and
 /// a few texels decide.
@@ -54,6 +57,8 @@ pub struct ChannelComparison {
     pub total: Difference,
     /// By bin of the table with fewer nodes, ascending in inclination.
     pub bins: Vec<BinDifference>,
+    /// By bin of azimuth; empty if both tables average over azimuths.
+    pub azimuths: Vec<AzimuthDifference>,
     /// Largest difference of the albedo, over the queries.
     pub albedo: f64,
     /// Largest difference of S as a share of the largest S of the reference.
@@ -84,6 +89,17 @@ pub struct BinDifference {
     pub albedo: [f64; 2],
 }
 
+/// The queries in one bin of azimuth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AzimuthDifference {
+    /// Middle of the bin, degrees from the major axis of the section.
+    pub azimuth_deg: f64,
+    /// Distances.
+    pub difference: Difference,
+    /// Mean albedo over the queries, of `a` and `b`.
+    pub albedo: [f64; 2],
+}
+
 impl Comparison {
     /// The clear level or the channel with the largest error of R, G and B.
     pub fn headline(&self) -> Option<&ChannelComparison> {
@@ -102,7 +118,8 @@ impl Comparison {
 ///
 /// Structure tables are compared at the absorption levels that both hold.
 ///
-/// * Errors: a structure table against a dyed one, an angle out of range.
+/// * Errors: a structure table against a dyed one, an angle out of range, tables of different azimuths
+///   unless one of them averages over them.
 pub fn compare<'a>(
     a: impl Into<TableRef<'a>>,
     b: impl Into<TableRef<'a>>,
@@ -115,22 +132,31 @@ pub fn compare<'a>(
         )));
     }
     let channels = shared_channels(a, b)?;
-    let (a_channels, b_channels) = channels.iter().map(|c| (c.a, c.b)).unzip();
-    let (a, b) = (Side::new(a, a_channels), Side::new(b, b_channels));
-    let (by_texel, rows) = measure::rows(&a, &b, theta_max_deg.to_radians());
+    let (a_channels, b_channels): (Vec<_>, Vec<_>) = channels.iter().map(|c| (c.a, c.b)).unzip();
+    let azimuths = azimuths::shared(a, b)?;
+    let (mut by_texel, mut rows) = (true, Vec::new());
+    for bin in 0..azimuths.count {
+        let slices = [Slice::of(a, bin), Slice::of(b, bin)];
+        let a = Side::new(slices[0].table(), a_channels.clone());
+        let b = Side::new(slices[1].table(), b_channels.clone());
+        let (all_texels, of_bin) = measure::rows(&a, &b, theta_max_deg.to_radians());
+        by_texel &= all_texels;
+        rows.extend(of_bin.into_iter().map(|row| (bin, row)));
+    }
+    let (bins_of, rows): (Vec<usize>, Vec<Row>) = rows.into_iter().unzip();
     if rows.is_empty() {
         return Err(TableError::Request(format!(
             "no node of the tables lies below {theta_max_deg} degrees"
         )));
     }
-    let coarse = if a.table.nodes().len() <= b.table.nodes().len() {
-        a.table.nodes()
+    let coarse = if a.nodes().inclinations() <= b.nodes().inclinations() {
+        a.nodes()
     } else {
-        b.table.nodes()
+        b.nodes()
     };
     let channels = channels.into_iter().enumerate().map(|(c, shared)| {
         let mut bins = Vec::new();
-        for node in 0..coarse.len() {
+        for node in 0..coarse.inclinations() {
             let inside: Vec<_> = rows
                 .iter()
                 .filter(|r| coarse.bin(r.theta) == node)
@@ -138,14 +164,24 @@ pub fn compare<'a>(
             if inside.is_empty() {
                 continue;
             }
-            let count = inside.len() as f64;
-            let mean = |side: usize| inside.iter().map(|r| r.albedo[c][side]).sum::<f64>() / count;
+            let (difference, albedo) = together(&inside, c);
             bins.push(BinDifference {
                 theta_deg: coarse.centers[node].to_degrees(),
-                difference: Sums::total(inside.iter().map(|r| &r.sums[c])).difference(),
-                albedo: [mean(0), mean(1)],
+                difference,
+                albedo,
             });
         }
+        let sides = (0..azimuths.count).filter(|_| !azimuths.is_averaged());
+        let sides = sides.map(|bin| {
+            let inside = rows.iter().zip(&bins_of).filter(|(_, of)| **of == bin);
+            let inside: Vec<_> = inside.map(|(row, _)| row).collect();
+            let (difference, albedo) = together(&inside, c);
+            AzimuthDifference {
+                azimuth_deg: azimuths.range(bin)[2].to_degrees(),
+                difference,
+                albedo,
+            }
+        });
         let all = Sums::total(rows.iter().map(|r| &r.sums[c]));
         let [largest, theta, phi] = all.largest;
         let query = rows.iter().find(|r| r.sums[c].largest == all.largest);
@@ -154,6 +190,7 @@ pub fn compare<'a>(
             level: shared.level,
             total: all.difference(),
             bins,
+            azimuths: sides.collect(),
             albedo: rows
                 .iter()
                 .map(|r| (r.albedo[c][0] - r.albedo[c][1]).abs())
@@ -168,6 +205,16 @@ pub fn compare<'a>(
         queries: rows.len(),
         channels: channels.collect(),
     })
+}
+
+/// Distance and mean albedo of some queries.
+fn together(rows: &[&Row], channel: usize) -> (Difference, [f64; 2]) {
+    let mean = |side: usize| {
+        let sum: f64 = rows.iter().map(|r| r.albedo[channel][side]).sum();
+        sum / rows.len() as f64
+    };
+    let sums = Sums::total(rows.iter().map(|r| &r.sums[channel]));
+    (sums.difference(), [mean(0), mean(1)])
 }
 
 /// A channel that both tables have: its number in each.

@@ -2,8 +2,10 @@
 
 use super::attributes::Attributes;
 use super::parts::Part;
-use super::{COLORS, FORMAT, TableFile, error_channel, level_channel};
-use crate::table::{Ledger, Mode, Nodes, Provenance, ScatterMaps, StructureTable, TableError};
+use super::{COLORS, FORMAT, FORMAT_AZIMUTHS, TableFile, azimuths, error_channel, level_channel};
+use crate::table::{
+    Azimuths, Ledger, Mode, Nodes, Provenance, ScatterMaps, StructureTable, TableError,
+};
 use std::f64::consts::FRAC_PI_2;
 
 /// The table that the parts hold; every contradiction is refused.
@@ -13,11 +15,16 @@ pub(super) fn table(parts: Vec<Part>) -> Result<TableFile, TableError> {
     };
     let head = first.attributes.clone();
     let format: i32 = head.get_int("format")?;
-    if format != FORMAT {
-        return Err(wrong(format!(
-            "it has format version {format}; this program reads version {FORMAT}"
-        )));
-    }
+    let azimuths = match format {
+        FORMAT => Azimuths::AVERAGED,
+        FORMAT_AZIMUTHS => azimuths::of_head(&head)?,
+        _ => {
+            return Err(wrong(format!(
+                "it has format version {format}; this program reads versions {FORMAT}, packed 2 and \
+                 {FORMAT_AZIMUTHS}"
+            )));
+        }
+    };
     let warp = head.get_text("warp")?;
     if warp != "unicube" {
         return Err(wrong(format!(
@@ -27,26 +34,32 @@ pub(super) fn table(parts: Vec<Part>) -> Result<TableFile, TableError> {
     let mode = mode(&head)?;
     let res = first.res;
     let (bins, face): (usize, usize) = (head.get_int("bins")?, head.get_int("face")?);
-    if bins != parts.len() || face != res {
+    if bins.checked_mul(azimuths.count) != Some(parts.len()) || face != res {
         return Err(wrong(format!(
-            "it has {} parts of width {res} but claims {bins} of width {face}",
-            parts.len()
+            "it has {} parts of width {res} but claims {bins} of width {face}{}",
+            parts.len(),
+            match azimuths.count {
+                1 => String::new(),
+                count => format!(" for each of {count} azimuths"),
+            }
         )));
     }
     for (bin, part) in parts.iter().enumerate() {
-        if part.name != format!("bin{bin:02}") || part.res != res {
+        let name = azimuths::part_name(&azimuths, bin, bins);
+        if part.name != name || part.res != res {
             return Err(wrong(format!(
-                "part {bin} is called {:?} and {} texels wide; expected bin{bin:02} and {res}",
+                "part {bin} is called {:?} and {} texels wide; expected {name} and {res}",
                 part.name, part.res
             )));
         }
     }
+    azimuths::check_parts(&azimuths, &parts)?;
     // From here on everything is by node.
     let mut by_node = parts;
     if mode == Mode::Paper {
         by_node.reverse();
     }
-    let nodes = nodes(mode, &by_node)?;
+    let nodes = nodes(mode, &by_node[..bins])?.at_azimuths(azimuths);
     match head.get_text("kind")? {
         "structure" => structure(nodes, by_node, &head).map(TableFile::Structure),
         "scatter" => scatter(nodes, by_node, &head).map(TableFile::Scatter),
@@ -117,14 +130,10 @@ fn scatter(nodes: Nodes, parts: Vec<Part>, head: &Attributes) -> Result<ScatterM
 /// Angles are degrees in files. The program's own nodes come back to the last bit; others as close
 /// as degrees allow.
 fn nodes(mode: Mode, parts: &[Part]) -> Result<Nodes, TableError> {
-    let mut nodes = Nodes {
-        mode,
-        edges: Vec::new(),
-        centers: Vec::new(),
-    };
+    let (mut edges, mut centers) = (Vec::<f64>::new(), Vec::new());
     for part in parts {
         let from = part.attributes.get_double("theta_from_deg")?.to_radians();
-        match nodes.edges.last() {
+        match edges.last() {
             Some(&last) if f64::abs(last - from) > 1e-9 => {
                 return Err(wrong(format!(
                     "{} begins at {:.6} degrees where its neighbor ends at {:.6}",
@@ -134,14 +143,14 @@ fn nodes(mode: Mode, parts: &[Part]) -> Result<Nodes, TableError> {
                 )));
             }
             Some(_) => {}
-            None => nodes.edges.push(from.max(-FRAC_PI_2)),
+            None => edges.push(from.max(-FRAC_PI_2)),
         }
         let to = part.attributes.get_double("theta_to_deg")?.to_radians();
         let center = part.attributes.get_double("theta_deg")?.to_radians();
-        nodes.edges.push(to.min(FRAC_PI_2));
-        nodes.centers.push(center);
+        edges.push(to.min(FRAC_PI_2));
+        centers.push(center);
     }
-    Ok(own_nodes(mode, nodes.edges, nodes.centers))
+    Ok(own_nodes(mode, edges, centers))
 }
 
 /// Nodes of the angles, the program's own to the last bit if they are that.
@@ -155,6 +164,7 @@ pub(super) fn own_nodes(mode: Mode, edges: Vec<f64>, centers: Vec<f64>) -> Nodes
         mode,
         edges,
         centers,
+        azimuths: Azimuths::AVERAGED,
     }
 }
 
@@ -231,6 +241,6 @@ fn take_colors(
     Ok(texels.map(|((&r, &g), &b)| [r, g, b]).collect())
 }
 
-fn wrong(what: impl Into<String>) -> TableError {
+pub(super) fn wrong(what: impl Into<String>) -> TableError {
     TableError::Inconsistent(what.into())
 }

@@ -2,7 +2,7 @@
 
 use super::attributes::Attributes;
 use super::parts::Part;
-use super::{COLORS, FORMAT, error_channel, level_channel};
+use super::{COLORS, FORMAT, FORMAT_AZIMUTHS, azimuths, error_channel, level_channel};
 use crate::table::{Ledger, Mode, Nodes, PHOTON, Provenance, ScatterMaps, StructureTable};
 
 /// The parts of a structure table.
@@ -63,12 +63,14 @@ fn parts(
         .map(|bin| {
             let node = nodes.node_of_part(bin);
             let mut attributes = Attributes::default();
-            attributes.double("theta_deg", nodes.centers[node].to_degrees());
-            attributes.double("theta_from_deg", nodes.edges[node].to_degrees());
-            attributes.double("theta_to_deg", nodes.edges[node + 1].to_degrees());
+            let [from, to] = nodes.theta_range(node);
+            attributes.double("theta_deg", nodes.theta(node).to_degrees());
+            attributes.double("theta_from_deg", from.to_degrees());
+            attributes.double("theta_to_deg", to.to_degrees());
+            azimuths::put_bin(&mut attributes, nodes, node);
             let channels = fill(node, &mut attributes);
             Part {
-                name: format!("bin{bin:02}"),
+                name: azimuths::part_name(&nodes.azimuths, bin, nodes.inclinations()),
                 res,
                 channels,
                 attributes,
@@ -76,8 +78,11 @@ fn parts(
         })
         .collect();
     let head = &mut parts[0].attributes;
-    head.int("format", FORMAT as usize);
-    head.int("bins", nodes.len());
+    let averaged = nodes.azimuths.is_averaged();
+    let format = if averaged { FORMAT } else { FORMAT_AZIMUTHS };
+    head.int("format", format as usize);
+    head.int("bins", nodes.inclinations());
+    azimuths::put_head(head, &nodes.azimuths);
     head.int("face", res);
     head.text("warp", "unicube");
     put_mode(head, nodes.mode);

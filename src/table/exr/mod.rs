@@ -5,6 +5,7 @@
 //! is in attributes named `vair:...`.
 
 mod attributes;
+mod azimuths;
 mod decode;
 mod encode;
 mod packed;
@@ -19,6 +20,8 @@ use std::path::Path;
 
 /// Version of the file format; files of other versions are refused.
 pub const FORMAT: i32 = 1;
+/// Version of the files of tables with several azimuths.
+pub const FORMAT_AZIMUTHS: i32 = 3;
 
 /// Longest file that is read, bytes. Tables may hold `check::MAX_SAMPLES` floats at most.
 const MAX_FILE: u64 = 1 << 31;

@@ -2,9 +2,10 @@
 
 use super::*;
 use crate::blame::Blame;
+use crate::math::symmetry::Symmetry;
 use crate::sampling::Rng;
 use crate::table::Mode;
-use crate::table::{Ledger, Nodes, PHOTON, Provenance};
+use crate::table::{Azimuths, Ledger, Nodes, PHOTON, Provenance};
 
 /// A small table with arbitrary content that keeps every rule.
 fn sample(mode: Mode, bins: usize, res: usize) -> StructureTable {
@@ -224,4 +225,56 @@ fn damaged_files_never_panic() {
     }
     let missing = folder.path().join("missing.exr");
     assert_eq!(TableFile::read(&missing).unwrap_err().blame(), Blame::Input);
+}
+
+/// The sample at two azimuths, a table more to each side.
+fn sides(symmetry: Symmetry) -> StructureTable {
+    let (a, b) = (sample(Mode::Cone, 6, 2), sample(Mode::Cone, 3, 2));
+    StructureTable {
+        nodes: b.nodes.at_azimuths(Azimuths { count: 2, symmetry }),
+        ..a
+    }
+}
+
+#[test]
+fn azimuths_round_trip_to_the_last_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("table.exr");
+    for symmetry in [Symmetry::None, Symmetry::MinorAxis, Symmetry::BothAxes] {
+        let table = sides(symmetry);
+        table.write(&path).unwrap();
+        assert_eq!(StructureTable::read(&path).unwrap(), table);
+        let maps = dyed(&table);
+        maps.write(&path).unwrap();
+        assert_eq!(ScatterMaps::read(&path).unwrap(), maps);
+    }
+    let parts = encode::structure(&sides(Symmetry::BothAxes));
+    let number = |part: usize, name| parts[part].attributes.get_double(name).unwrap();
+    assert_eq!(parts[4].name, "azimuth01-bin01");
+    assert_eq!(number(4, "azimuth_deg"), 67.5);
+    assert_eq!(number(4, "theta_deg"), number(1, "theta_deg"));
+}
+
+#[test]
+fn azimuths_that_contradict_themselves_are_refused() {
+    let parts = encode::structure(&sides(Symmetry::BothAxes));
+    let refused = |change: &dyn Fn(&mut Vec<parts::Part>), words: &str| {
+        let mut parts = parts.clone();
+        change(&mut parts);
+        let message = decode::table(parts).unwrap_err().to_string();
+        assert!(message.contains(words), "{message}");
+    };
+    refused(&|p| p[0].attributes.int("format", 1), "claims 3");
+    refused(&|p| p[0].attributes.int("azimuths", 1), "1 azimuths");
+    refused(&|p| p[0].attributes.int("azimuths", 3), "each of 3");
+    refused(
+        &|p| p[0].attributes.text("symmetry", "x"),
+        "symmetry is \"x\"",
+    );
+    refused(
+        &|p| p[0].attributes.text("symmetry", "none"),
+        "vair:azimuth_deg of part azimuth00-bin00 is 22.5, not 90",
+    );
+    refused(&|p| p[4].attributes.double("theta_deg", 1.0), "theta_deg");
+    refused(&|p| p[0].attributes.text("mode", "paper"), "azimuth");
 }

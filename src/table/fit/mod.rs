@@ -59,7 +59,7 @@ impl Fit {
 impl Model {
     /// Fits the model to some channels (absorption levels or colors) of a table.
     ///
-    /// * Errors: no channel, or one that the table does not have.
+    /// * Errors: no channel, or one that the table does not have; several azimuths.
     pub fn fit<'a>(
         self,
         table: impl Into<TableRef<'a>>,
@@ -72,6 +72,7 @@ impl Model {
                 table.channels()
             )));
         }
+        table.nodes().only_averaged()?;
         let data = Data::new(table, channels);
         if data.queries.is_empty() {
             return Err(TableError::Request(

@@ -103,9 +103,11 @@ impl PackedTable {
     /// Packs a table.
     ///
     /// * Errors: a face edge that is no power of two, a rank of 0 or above the number of maps, a size
-    ///   too small to hold anything.
+    ///   too small to hold anything, several azimuths.
     pub fn new<'a>(table: impl Into<TableRef<'a>>, packing: Packing) -> Result<Self, TableError> {
-        choose::pack(table.into(), packing)
+        let table = table.into();
+        table.nodes().only_averaged()?;
+        choose::pack(table, packing)
     }
 
     /// Bytes of the file.

@@ -83,6 +83,7 @@ impl DifferencePlot<'_> {
         let table = self.tables[which];
         let (nodes, res) = (table.nodes(), table.res());
         super::check_face(res)?;
+        nodes.only_averaged()?;
         let gray = table.channel(self.channel).ok_or_else(|| {
             TableError::Request(format!(
                 "channel {} was asked for; {} has channels 0 to {}",

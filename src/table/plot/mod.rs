@@ -76,6 +76,7 @@ impl Plot<'_> {
         }
         check_incidence(self.incidence_deg)?;
         check_face(self.maps.res)?;
+        self.maps.nodes.only_averaged()?;
         let maps = self.maps;
         let table = ScatterTable::new(maps.nodes.clone(), maps.res, maps.rgb.clone());
         let theta = self.incidence_deg.to_radians();
@@ -147,6 +148,7 @@ pub fn draw_lobe(
     }
     check_incidence(incidence_deg)?;
     check_face(maps.res)?;
+    maps.nodes.only_averaged()?;
     let table = ScatterTable::new(maps.nodes.clone(), maps.res, maps.rgb.clone());
     let photons = maps.ledger.iter().map(|l| l.photons()).sum::<f64>();
     let field = Field::new(
