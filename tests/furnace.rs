@@ -16,24 +16,23 @@ use vair::{skin, species};
 /// Mean radiance over a small picture of clear fur on nothing, its standard error, and the share of
 /// the picture that is fur.
 fn furnace(name: &str, overrides: &[&str], sampler: Sampler) -> (Rgb, f64, f64) {
-    furnace_of(name, overrides, sampler, 1)
+    let bake = Settings {
+        photons: 300_000,
+        ..Settings::cone()
+    };
+    furnace_of(name, overrides, sampler, &bake)
 }
 
 fn furnace_of(
     name: &str,
     overrides: &[&str],
     sampler: Sampler,
-    azimuths: usize,
+    bake: &Settings,
 ) -> (Rgb, f64, f64) {
     let overrides: Vec<String> = overrides.iter().map(|o| (*o).to_owned()).collect();
     let species = species::load(name, &overrides).unwrap();
-    let bake = Settings {
-        photons: 300_000,
-        azimuths,
-        ..Settings::cone()
-    };
     let cancel = Cancel::default();
-    let materials = assembly::materials(&species, &bake, None, &Silent, &cancel).unwrap();
+    let materials = assembly::materials(&species, bake, None, &Silent, &cancel).unwrap();
     let ball = skin::load("ball").unwrap();
     let settings = GroomSettings {
         strands: Some(4000),
@@ -100,8 +99,15 @@ fn clear_flat_hair_is_invisible() {
         "under.pigment.1.eumelanin=0",
         "under.pigment.1.pheomelanin=0",
     ];
+    let bake = Settings {
+        photons: 100_000,
+        azimuths: 3,
+        face: 16,
+        reconstruct: false,
+        ..Settings::cone()
+    };
     for sampler in [Sampler::Qsir, Sampler::Mis] {
-        let (mean, error, fur) = furnace_of("harbor-seal", &clear, sampler, 3);
+        let (mean, error, fur) = furnace_of("harbor-seal", &clear, sampler, &bake);
         assert!(fur > 0.02, "there is fur: {fur}");
         let off = f64::from((mean - 1.0).abs().max_element()) / fur;
         assert!(
