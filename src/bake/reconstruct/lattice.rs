@@ -240,9 +240,9 @@ mod tests {
         };
         let photons = vec![1000.0; nodes.len()];
         let mut sums: Field<1> = Field::new(lattice.size());
-        for node in 0..nodes.len() {
+        for (node, &photons) in photons.iter().enumerate() {
             let counts = texels.iter().map(|&[texel, _]| {
-                [(density(node, texel) * cube.solid_angle(texel) * photons[node]) as f32]
+                [(density(node, texel) * cube.solid_angle(texel) * photons) as f32]
             });
             lattice.gather(node, counts, &mut sums);
         }

@@ -265,7 +265,7 @@ impl Triangles {
                 return None;
             }
             let Meeting { t, enters } = search.shear.meet(&triangle.corners())?;
-            if !(t >= 0.0 && t <= limit) || !triangle.is_of(kinds, enters) {
+            if !(t >= 0.0 && t <= limit && triangle.is_of(kinds, enters)) {
                 return None;
             }
             let is_nearer =
