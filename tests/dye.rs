@@ -63,10 +63,13 @@ fn baked(fiber: &Fiber, settings: &Settings, photon_seed: u64) -> StructureTable
     baked.unwrap().table
 }
 
+/// Maps as counted: a filter keeps them positive level by level, which is no matter of dyeing and would
+/// be a second difference.
 fn of_levels(levels: Vec<f64>, photons: u64) -> Settings {
     Settings {
         photons,
         levels,
+        reconstruct: false,
         ..Settings::cone()
     }
 }
