@@ -17,6 +17,7 @@ fn structure(name: &str, class: usize, set: &[String]) -> Structure {
     station.structure.clone()
 }
 
+/// Whole photons, counted: what chi-squared is about. A filter would take out just what it measures.
 fn table(fiber: &Fiber, seed: u64, photons: u64) -> StructureTable {
     let settings = Settings {
         photons,
@@ -25,6 +26,8 @@ fn table(fiber: &Fiber, seed: u64, photons: u64) -> StructureTable {
         seed,
         levels: vec![0.0],
         fold: false,
+        fork: false,
+        reconstruct: false,
         ..Settings::cone()
     };
     let (progress, cancel) = (Silent, Cancel::default());
