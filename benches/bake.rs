@@ -4,7 +4,9 @@
 //! The best of five rounds by the time that the thread ran: other load on the machine disturbs it
 //! least.
 
-use std::time::Instant;
+mod clock;
+
+use clock::thread_seconds;
 use vair::bake::{Photon, Sides, fly};
 use vair::fiber::Fiber;
 use vair::species::Species;
@@ -82,17 +84,4 @@ fn round(fiber: &Fiber) -> (f64, u64) {
         events += u64::from(fly(fiber, &photon, 1000).events);
     }
     (thread_seconds() - start, events)
-}
-
-/// Time that this thread ran, where the system tells, else that of the clock.
-fn thread_seconds() -> f64 {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let ran = text.split_whitespace().next();
-    match ran.and_then(|n| n.parse::<f64>().ok()) {
-        Some(nanoseconds) => nanoseconds * 1e-9,
-        None => {
-            static START: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
-            START.elapsed().as_secs_f64()
-        }
-    }
 }

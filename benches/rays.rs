@@ -3,6 +3,9 @@
 //!
 //! Time is that of the thread, so that a busy machine does not count.
 
+mod clock;
+
+use clock::thread_seconds;
 use glam::Vec3;
 use std::hint::black_box;
 use vair::bsdf::HairMaterial;
@@ -75,22 +78,6 @@ fn measure(name: &str, rays: usize, mut work: impl FnMut()) {
         best = best.min(thread_seconds() - start);
     }
     println!("{name:>10}: {:.3} M rays/s", rays as f64 / best * 1e-6);
-}
-
-/// Time this thread has run: user time of the process, whose only busy thread it is.
-fn thread_seconds() -> f64 {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let nanoseconds = text
-        .split_whitespace()
-        .next()
-        .and_then(|n| n.parse::<f64>().ok());
-    nanoseconds.unwrap_or_else(wall_nanoseconds) * 1e-9
-}
-
-fn wall_nanoseconds() -> f64 {
-    std::time::SystemTime::now()
-        .duration_since(std::time::UNIX_EPOCH)
-        .map_or(0.0, |d| d.as_nanos() as f64)
 }
 
 fn sphere(rng: &mut Rng) -> Vec3 {

@@ -6,6 +6,9 @@
 //! One and two threads take turns, so that other load on the machine meets both; processor seconds
 //! stand beside wall seconds, since those do not count what others use.
 
+mod clock;
+
+use clock::processor_seconds;
 use std::time::Instant;
 use vair::bake::{Bake, Goal, Settings};
 use vair::progress::{Cancel, Silent};
@@ -67,25 +70,6 @@ fn photons(name: &str, most: f64) -> Result<(), String> {
         count *= 10f64.sqrt();
     }
     Ok(())
-}
-
-/// Processor seconds of this process so far, from Linux's accounting; wall seconds elsewhere.
-fn processor_seconds() -> f64 {
-    const TICKS: f64 = 100.0;
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let fields: Vec<&str> = stat
-        .rsplit(')')
-        .next()
-        .unwrap_or("")
-        .split_whitespace()
-        .collect();
-    let ticks = |i: usize| fields.get(i).and_then(|f| f.parse::<f64>().ok());
-    match ticks(11).zip(ticks(12)) {
-        Some((user, system)) => (user + system) / TICKS,
-        None => std::time::SystemTime::UNIX_EPOCH
-            .elapsed()
-            .map_or(0.0, |t| t.as_secs_f64()),
-    }
 }
 
 /// The most memory this process had, on Linux.

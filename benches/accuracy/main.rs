@@ -12,8 +12,11 @@
 //! with two tables of different seeds, which leaves the bias: what no number of photons mends.
 
 mod cells;
+#[path = "../clock/mod.rs"]
+mod clock;
 
 use cells::{Cells, Reference};
+use clock::processor_seconds;
 use std::time::Instant;
 use vair::bake::{Bake, Goal, Settings, bake};
 use vair::fiber::Fiber;
@@ -199,15 +202,4 @@ fn first_table(name: &str, station: &Station, photons: u64) -> Result<(), Failur
         100.0 * noise
     );
     Ok(())
-}
-
-/// User and system time of this process so far.
-fn processor_seconds() -> f64 {
-    let text = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    let fields = text.rsplit(')').next().unwrap_or_default();
-    let ticks = fields.split_whitespace().skip(11).take(2);
-    ticks
-        .filter_map(|field| field.parse::<f64>().ok())
-        .sum::<f64>()
-        / 100.0
 }

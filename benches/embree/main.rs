@@ -7,9 +7,12 @@
 //! 16 events are followed, nothing is tallied. That all follow the same light shows in their events a
 //! photon, which agree but for noise and for the flat pieces.
 
+#[path = "../clock/mod.rs"]
+mod clock;
+
+use clock::thread_seconds;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-use std::time::Instant;
 use vair::bake::{End, Photon, Sides, fly};
 use vair::fiber::Fiber;
 use vair::species::{Structure, load};
@@ -241,18 +244,5 @@ impl Drop for Embree {
         // It only waits for more.
         let _ = self.child.kill();
         let _ = self.child.wait();
-    }
-}
-
-/// Time that this thread ran, where the system tells, else that of the clock.
-fn thread_seconds() -> f64 {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let ran = text.split_whitespace().next();
-    match ran.and_then(|n| n.parse::<f64>().ok()) {
-        Some(nanoseconds) => nanoseconds * 1e-9,
-        None => {
-            static START: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
-            START.elapsed().as_secs_f64()
-        }
     }
 }

@@ -6,8 +6,8 @@
 //! sides agree may a grazing pair of crossings hide, and the parabola through both ends tells.
 
 use super::crossing::{Crossing, Quadratic};
-use super::scales::{Cell, Plane, Scales, Strip, distance, larger};
-use super::section::UnitRay;
+use super::scales::{Cell, Plane, Scales, Strip, distance};
+use super::section::{UnitRay, larger};
 use glam::DVec3;
 
 /// Which side of the surface a ray travels on.

@@ -11,7 +11,7 @@
 mod seek;
 
 use super::pattern::Pattern;
-use super::section::{Line, Section};
+use super::section::{Line, Section, larger, smaller};
 use glam::DVec3;
 
 /// One strip of one sector: values on the two half planes. One cache line.
@@ -44,18 +44,6 @@ impl Strip {
         let high = smaller(self.end[0], self.end[1]);
         smaller(z0, z1) > low && larger(z0, z1) < high
     }
-}
-
-/// The smaller one in one instruction, as neither is NaN.
-#[inline]
-fn smaller(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// The larger one.
-#[inline]
-pub(super) fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
 
 /// A half plane from the axis.

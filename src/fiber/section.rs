@@ -280,6 +280,18 @@ pub(super) fn floor(x: f64) -> f64 {
     if whole > x { whole - 1.0 } else { whole }
 }
 
+/// The smaller one in one instruction, as neither is NaN.
+#[inline]
+pub(super) fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger one likewise.
+#[inline]
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
 /// The multiple of `period` that brings `z` nearest to it: `period * round(z / period)`.
 #[inline]
 pub(super) fn nearest_period(z: f64, period: f64) -> f64 {

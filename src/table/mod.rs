@@ -21,7 +21,7 @@ mod structure;
 mod taps;
 mod undyed;
 
-pub use self::exr::{FORMAT, FORMAT_AZIMUTHS, TableFile};
+pub use self::exr::{TableFile, format_of, part_name};
 pub use azimuths::{AzimuthBin, Azimuths};
 pub use compare::{
     AzimuthDifference, BinDifference, ChannelComparison, Comparison, Difference, THETA_MAX_DEG,

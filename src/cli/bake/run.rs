@@ -57,7 +57,8 @@ pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), 
 /// About how long a table takes to be written and to be safe on a disk.
 fn writing(settings: &Settings) -> Duration {
     const SECONDS_A_BYTE: f64 = 3e-9;
-    let samples = settings.bins * 6 * settings.face * settings.face * (settings.levels.len() + 1);
+    let samples =
+        settings.nodes() * 6 * settings.face * settings.face * (settings.levels.len() + 1);
     Duration::from_secs_f64(4.0 * samples as f64 * SECONDS_A_BYTE)
 }
 

@@ -6,8 +6,7 @@ use crate::cli::stdout::{print, print_json};
 use crate::cli::{Console, Failure};
 use crate::io::check_writable;
 use crate::table::{
-    ChannelComparison, Comparison, Difference, DifferencePlot, Provenance, THETA_MAX_DEG,
-    TableFile, compare,
+    Comparison, Difference, DifferencePlot, Provenance, THETA_MAX_DEG, TableFile, compare,
 };
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -189,45 +188,34 @@ fn text(compared: &Comparison) -> String {
         );
     }
     if let Some(c) = compared.headline() {
-        out.push_str(&bins(c));
+        let bins = c
+            .bins
+            .iter()
+            .map(|b| (b.theta_deg, &b.difference, b.albedo));
+        out.push_str(&rows(&c.name, "bin", "theta  ", bins));
         if !c.azimuths.is_empty() {
-            out.push_str(&azimuths(c));
+            let sides = (c.azimuths.iter()).map(|s| (s.azimuth_deg, &s.difference, s.albedo));
+            out.push_str(&rows(&c.name, "azimuth", "azimuth", sides));
         }
     }
     out
 }
 
-fn azimuths(channel: &ChannelComparison) -> String {
+/// Distances and albedos, angle by angle.
+fn rows<'a>(
+    channel: &str,
+    by: &str,
+    angle: &str,
+    all: impl Iterator<Item = (f64, &'a Difference, [f64; 2])>,
+) -> String {
     let mut out = format!(
-        "\n{} by azimuth\n  azimuth      error    noise  debiased  albedo   albedo of the reference\n",
-        channel.name
+        "\n{channel} by {by}\n  {angle}      error    noise  debiased  albedo   albedo of the reference\n"
     );
-    for side in &channel.azimuths {
+    for (degrees, difference, [albedo, reference]) in all {
         let _ = writeln!(
             out,
-            "{:>7.2}     {}   {:.5}  {:.5}",
-            side.azimuth_deg,
-            percents(&side.difference),
-            side.albedo[0],
-            side.albedo[1]
-        );
-    }
-    out
-}
-
-fn bins(channel: &ChannelComparison) -> String {
-    let mut out = format!(
-        "\n{} by bin\n  theta        error    noise  debiased  albedo   albedo of the reference\n",
-        channel.name
-    );
-    for bin in &channel.bins {
-        let _ = writeln!(
-            out,
-            "{:>7.2}     {}   {:.5}  {:.5}",
-            bin.theta_deg,
-            percents(&bin.difference),
-            bin.albedo[0],
-            bin.albedo[1]
+            "{degrees:>7.2}     {}   {albedo:.5}  {reference:.5}",
+            percents(difference)
         );
     }
     out

@@ -2,7 +2,7 @@
 
 use crate::cli::Failure;
 use crate::cli::stdout::{print, print_json};
-use crate::table::{FORMAT, FORMAT_AZIMUTHS, Ledger, Mode, Nodes, PHOTON, Provenance, TableFile};
+use crate::table::{Ledger, Mode, Nodes, PHOTON, Provenance, TableFile, format_of, part_name};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -100,13 +100,6 @@ impl<'a> Summary<'a> {
         (0..n).map(move |bin| (bin, self.nodes.node_of_part(bin)))
     }
 
-    fn format(&self) -> i32 {
-        match self.nodes.azimuths.is_averaged() {
-            true => FORMAT,
-            false => FORMAT_AZIMUTHS,
-        }
-    }
-
     /// Bounds and middle of a node's azimuths, degrees from the major axis, if there are several.
     fn azimuth_deg(&self, node: usize) -> Option<[f64; 3]> {
         let azimuths = self.nodes.azimuths;
@@ -126,7 +119,7 @@ impl<'a> Summary<'a> {
             .map(|(bin, node)| self.bin_json(bin, node))
             .collect();
         json!({
-            "format": self.format(),
+            "format": format_of(self.nodes),
             "azimuths": self.nodes.azimuths.count,
             "kind": self.kind,
             "mode": self.mode(),
@@ -157,17 +150,9 @@ impl<'a> Summary<'a> {
         let clear = &self.ledger[node][0];
         let [from, to] = nodes.theta_range(node);
         let side = self.azimuth_deg(node);
-        let part = match side {
-            None => format!("bin{bin:02}"),
-            Some(_) => format!(
-                "azimuth{:02}-bin{:02}",
-                nodes.azimuth_bin(bin),
-                bin % nodes.inclinations()
-            ),
-        };
         json!({
             "bin": bin,
-            "part": part,
+            "part": part_name(nodes, bin),
             "theta_deg": nodes.theta(node).to_degrees(),
             "theta_from_deg": from.to_degrees(),
             "theta_to_deg": to.to_degrees(),
@@ -194,7 +179,7 @@ impl<'a> Summary<'a> {
                 "{}, {} mode, format {}",
                 self.kind,
                 self.mode(),
-                self.format()
+                format_of(self.nodes)
             ),
         );
         let class = if p.class.is_empty() { "-" } else { &p.class };

@@ -1,6 +1,6 @@
 //! Pigment in streaks: cells slender along the axis, each with a density of its own.
 
-use crate::fiber::section::{UnitRay, floor};
+use crate::fiber::section::{UnitRay, floor, smaller};
 use crate::sampling::{Rng, hash64};
 
 /// Width of a streak, micrometers: some granules side by side.
@@ -89,12 +89,6 @@ impl Streaks {
             }
         }
     }
-}
-
-/// The smaller one, as neither is NaN.
-#[inline]
-fn smaller(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
 }
 
 /// A ray's way through the columns along one axis.

@@ -2,7 +2,7 @@
 
 use super::attributes::Attributes;
 use super::parts::Part;
-use super::{COLORS, FORMAT, FORMAT_AZIMUTHS, azimuths, error_channel, level_channel};
+use super::{COLORS, azimuths, error_channel, format_of, level_channel, part_name};
 use crate::table::{Ledger, Mode, Nodes, PHOTON, Provenance, ScatterMaps, StructureTable};
 
 /// The parts of a structure table.
@@ -70,7 +70,7 @@ fn parts(
             azimuths::put_bin(&mut attributes, nodes, node);
             let channels = fill(node, &mut attributes);
             Part {
-                name: azimuths::part_name(&nodes.azimuths, bin, nodes.inclinations()),
+                name: part_name(nodes, bin),
                 res,
                 channels,
                 attributes,
@@ -78,9 +78,7 @@ fn parts(
         })
         .collect();
     let head = &mut parts[0].attributes;
-    let averaged = nodes.azimuths.is_averaged();
-    let format = if averaged { FORMAT } else { FORMAT_AZIMUTHS };
-    head.int("format", format as usize);
+    head.int("format", format_of(nodes) as usize);
     head.int("bins", nodes.inclinations());
     azimuths::put_head(head, &nodes.azimuths);
     head.int("face", res);

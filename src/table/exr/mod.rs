@@ -14,14 +14,32 @@ mod raw;
 
 pub(super) use packed::encode_packed;
 
-use super::{PackedTable, Provenance, ScatterMaps, StructureTable, TableError};
+use super::{Nodes, PackedTable, Provenance, ScatterMaps, StructureTable, TableError};
 use crate::io::{AtomicFile, read_bounded};
 use std::path::Path;
 
 /// Version of the file format; files of other versions are refused.
-pub const FORMAT: i32 = 1;
+const FORMAT: i32 = 1;
 /// Version of the files of tables with several azimuths.
-pub const FORMAT_AZIMUTHS: i32 = 3;
+const FORMAT_AZIMUTHS: i32 = 3;
+
+/// Channels of a dyed table.
+const COLORS: [&str; 3] = ["R", "G", "B"];
+
+/// Version of the file that a table of these nodes makes, unpacked.
+pub fn format_of(nodes: &Nodes) -> i32 {
+    match nodes.azimuths.is_averaged() {
+        true => FORMAT,
+        false => FORMAT_AZIMUTHS,
+    }
+}
+
+/// Name of a part of that file.
+///
+/// * `part`: counted from 0 in the order of the file.
+pub fn part_name(nodes: &Nodes, part: usize) -> String {
+    azimuths::part_name(&nodes.azimuths, part, nodes.inclinations())
+}
 
 /// Longest file that is read, bytes. Tables may hold `check::MAX_SAMPLES` floats at most.
 const MAX_FILE: u64 = 1 << 31;
@@ -136,13 +154,10 @@ fn level_channel(level: usize) -> String {
     format!("a{level:02}")
 }
 
-#[cfg(test)]
-mod tests;
-
-/// Channels of a dyed table.
-const COLORS: [&str; 3] = ["R", "G", "B"];
-
 /// The channel of a color's error.
 fn error_channel(color: &str) -> String {
     format!("error.{color}")
 }
+
+#[cfg(test)]
+mod tests;
