@@ -2,9 +2,9 @@
 
 use crate::bake::{BakeError, Baked, Cache, Settings, find_or_bake};
 use crate::blame::Blame;
-use crate::bsdf::{HairMaterial, TableSet, Zone};
+use crate::bsdf::{CoatPart, HairMaterial, TableSet, Zone};
 use crate::progress::{Cancel, Progress};
-use crate::species::{HairClass, Section, Species, Station};
+use crate::species::{HairClass, PigmentBand, Section, Species, Station};
 use crate::table::{Provenance, ScatterTable, TableError, TableFile, Undyed};
 
 /// Materials that cannot be made.
@@ -122,15 +122,12 @@ pub fn materials_with(
     }
     let mut materials = Vec::with_capacity(species.classes.len());
     for class in &species.classes {
-        let zones = class.pigment.iter().map(|band| Zone {
-            to_mm: band.to_mm as f32,
-            softness_mm: band.softness_mm as f32,
-        });
-        let mut tables = Vec::with_capacity(class.stations.len() * class.pigment.len());
+        let (parts, dyes) = coat_parts(&[&class.pigment]);
+        let mut tables: Vec<Vec<ScatterTable>> = vec![Vec::new(); dyes.len()];
         for station in &class.stations {
             if let Some(table) = nearest(given, class, station) {
-                for band in &class.pigment {
-                    tables.push(ScatterTable::from(match table {
+                for (dyed, band) in tables.iter_mut().zip(&dyes) {
+                    dyed.push(ScatterTable::from(match table {
                         TableFile::Scatter(maps) => maps.clone(),
                         TableFile::Structure(table) => table.dye(band.absorption_per_um())?,
                     }));
@@ -142,10 +139,9 @@ pub fn materials_with(
             if !baked.complete {
                 return Err(BakeError::Stopped.into());
             }
-            for band in &class.pigment {
-                tables.push(ScatterTable::from(
-                    baked.table.dye(band.absorption_per_um())?,
-                ));
+            for (dyed, band) in tables.iter_mut().zip(&dyes) {
+                let maps = baked.table.dye(band.absorption_per_um())?;
+                dyed.push(ScatterTable::from(maps));
             }
         }
         let stations = class
@@ -153,11 +149,36 @@ pub fn materials_with(
             .iter()
             .map(|station| station.at as f32)
             .collect();
-        // A validated class has as many tables as stations times bands, and at least one.
-        materials
-            .extend(TableSet::new(stations, zones.collect(), tables).map(HairMaterial::Tables));
+        let tables = tables.into_iter().flatten().collect();
+        // A validated class has a station and a band, and as many tables as stations times dyes.
+        materials.extend(TableSet::with_parts(stations, parts, tables).map(HairMaterial::Tables));
     }
     Ok(materials)
+}
+
+/// The parts of a coat, and the dyes that they need: pigment that occurs twice is dyed once.
+fn coat_parts(pigments: &[&[PigmentBand]]) -> (Vec<CoatPart>, Vec<PigmentBand>) {
+    let mut dyes: Vec<PigmentBand> = Vec::new();
+    let mut dye_of = |band: &PigmentBand| {
+        let same =
+            |d: &PigmentBand| (d.eumelanin, d.pheomelanin) == (band.eumelanin, band.pheomelanin);
+        dyes.iter().position(same).unwrap_or_else(|| {
+            dyes.push(*band);
+            dyes.len() - 1
+        })
+    };
+    let parts = (pigments.iter())
+        .map(|bands| CoatPart {
+            zones: (bands.iter())
+                .map(|band| Zone {
+                    to_mm: band.to_mm as f32,
+                    softness_mm: band.softness_mm as f32,
+                })
+                .collect(),
+            dyes: bands.iter().map(&mut dye_of).collect(),
+        })
+        .collect();
+    (parts, dyes)
 }
 
 /// The table of the class that was baked nearest to the station.

@@ -23,24 +23,56 @@ pub struct Zone {
     pub softness_mm: f32,
 }
 
-/// Tables of one hair class.
+/// Tables of one hair class. A coat of several colors has several sets of zones, one for each part of
+/// its pattern; every hair belongs to one part.
 #[derive(Clone, Debug)]
 pub struct TableSet {
     stations: Vec<f32>,
-    zones: Vec<Zone>,
-    /// `tables[station * zones + zone]`.
+    /// Never empty.
+    parts: Vec<CoatPart>,
+    /// `tables[dye * stations + station]`.
     tables: Vec<ScatterTable>,
 }
 
+/// The pigment of the hairs in one part of a coat's pattern.
+#[derive(Clone, Debug)]
+pub struct CoatPart {
+    /// From the tip, ascending; the last one is open-ended.
+    pub zones: Vec<Zone>,
+    /// Which dye colors each zone.
+    pub dyes: Vec<usize>,
+}
+
 impl TableSet {
+    /// A set whose hairs are all alike.
+    ///
     /// * `stations`: positions along the hair, 0 root .. 1 tip, ascending.
     /// * `zones`: from the tip, ascending; the last one is open-ended.
-    /// * `tables`: one a station and zone, zones running fastest. `None` if the counts disagree.
+    /// * `tables`: one a zone and station, stations running fastest. `None` if the counts disagree.
     pub fn new(stations: Vec<f32>, zones: Vec<Zone>, tables: Vec<ScatterTable>) -> Option<Self> {
-        let complete = !tables.is_empty() && tables.len() == stations.len() * zones.len();
+        let dyes = (0..zones.len()).collect();
+        Self::with_parts(stations, vec![CoatPart { zones, dyes }], tables)
+    }
+
+    /// A set whose hairs belong to the parts of a pattern.
+    ///
+    /// * `parts`: the pigment of each part; zones of equal pigment share a dye.
+    /// * `tables`: one a dye and station, stations running fastest. `None` if the counts disagree.
+    pub fn with_parts(
+        stations: Vec<f32>,
+        parts: Vec<CoatPart>,
+        tables: Vec<ScatterTable>,
+    ) -> Option<Self> {
+        let whole = |part: &CoatPart| {
+            let dyed = |&dye: &usize| (dye + 1) * stations.len() <= tables.len();
+            !part.zones.is_empty()
+                && part.zones.len() == part.dyes.len()
+                && part.dyes.iter().all(dyed)
+        };
+        let complete = !stations.is_empty() && !parts.is_empty() && parts.iter().all(whole);
         complete.then_some(Self {
             stations,
-            zones,
+            parts,
             tables,
         })
     }
@@ -48,21 +80,23 @@ impl TableSet {
     /// The table at a point, and a random number that is left: between stations and across soft edges
     /// of zones one of two is drawn with the share as its probability. On average that is the blend, at
     /// a fraction of its cost.
-    fn choose(&self, at: f32, tip_mm: f32, u: f32) -> (&ScatterTable, f32) {
-        let (s0, s1, share) = bracket_station(&self.stations, at);
+    fn choose(&self, place: Place, u: f32) -> (&ScatterTable, f32) {
+        let part = &self.parts[place.part.min(self.parts.len() - 1)];
+        let (s0, s1, share) = bracket_station(&self.stations, place.at);
         let (second, u) = if u < share {
             (true, u / share)
         } else {
             (false, rescale(u, share))
         };
         let station = if second { s1 } else { s0 };
-        let (z0, z1, share) = bracket_zone(&self.zones, tip_mm);
+        let (z0, z1, share) = bracket_zone(&part.zones, place.tip_mm);
         let (zone, u) = if u < share {
             (z1, u / share)
         } else {
             (z0, rescale(u, share))
         };
-        (&self.tables[station * self.zones.len() + zone], u)
+        let dye = part.dyes[zone];
+        (&self.tables[dye * self.stations.len() + station], u)
     }
 }
 
@@ -97,20 +131,29 @@ fn bracket_zone(zones: &[Zone], tip_mm: f32) -> (usize, usize, f32) {
     (zones.len() - 1, zones.len() - 1, 0.0)
 }
 
+/// A place on a hair.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Position along the hair, 0 root .. 1 tip.
+    pub at: f32,
+    /// Distance from the tip along the hair, millimeters.
+    pub tip_mm: f32,
+    /// Part of the coat's pattern that the hair belongs to; the last one if there are fewer.
+    pub part: usize,
+}
+
 impl HairMaterial {
     /// The model at a point of a strand, seen along `wo`.
     ///
-    /// * `at`: position along the strand, 0 root .. 1 tip.
-    /// * `tip_mm`: distance from the tip along the strand, millimeters.
     /// * `wo`: unit direction to the viewer in the strand frame.
     /// * `azimuth`: of `wo` around the strand from the major axis of its section, radians. Of effect
     ///   where tables tell azimuths apart.
     /// * `u`: a random number in `[0, 1)` that chooses where tables blend.
-    pub fn at(&self, at: f32, tip_mm: f32, wo: Vec3, azimuth: f32, u: f32) -> Bsdf<'_> {
+    pub fn at(&self, place: Place, wo: Vec3, azimuth: f32, u: f32) -> Bsdf<'_> {
         match self {
             Self::Isotropic(albedo) => Bsdf::Isotropic(*albedo),
             Self::Tables(set) => {
-                let (table, u) = set.choose(at, tip_mm, u);
+                let (table, u) = set.choose(place, u);
                 Bsdf::Table(table.lobe_at(wo, azimuth, u))
             }
         }

@@ -7,7 +7,7 @@
 
 mod material;
 
-pub use material::{HairMaterial, TableSet, Zone};
+pub use material::{CoatPart, HairMaterial, Place, TableSet, Zone};
 
 use crate::color::Rgb;
 use crate::table::Lobe;

@@ -33,6 +33,8 @@ pub struct Groom {
     pub offsets: Vec<u32>,
     /// Hair class of each strand: index into `classes`.
     pub class: Vec<u8>,
+    /// Part of the coat's pattern that each strand belongs to: index into `coats`.
+    pub coat: Vec<u8>,
     /// Stable id of each strand: survives a change of density. The top four bits are the class, the
     /// rest is the rank in the class's blue-noise order: the strands of lowest rank form an evenly
     /// thinned groom.
@@ -46,6 +48,8 @@ pub struct Groom {
     pub normal: Vec<Vec3>,
     /// Names of the hair classes.
     pub classes: Vec<String>,
+    /// Names of the parts of the coat's pattern; the first has the pigment of the species itself.
+    pub coats: Vec<String>,
     /// Per class: factor on the natural diameter by which a thinned groom stays opaque; 1 at full
     /// density.
     pub width_scale: Vec<f32>,

@@ -1,6 +1,6 @@
 //! What a ray has met, as something that scatters: one face for strands and matte surfaces.
 
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, Place};
 use crate::color::Rgb;
 use crate::math::frame::strand_frame;
 use crate::sampling::concentric_disk;
@@ -54,8 +54,13 @@ impl<'a> Scatter<'a> {
                 let wo = Vec3::new(wo.x, 0.0, wo.z);
                 let azimuth = azimuth_of(frame.x_axis, hit.side, hit.tangent);
                 let material = &scene.materials[hit.class as usize];
+                let place = Place {
+                    at: hit.at,
+                    tip_mm: hit.tip_mm,
+                    part: usize::from(hit.coat),
+                };
                 let kind = Kind::Strand {
-                    bsdf: material.at(hit.at, hit.tip_mm, wo, azimuth, u),
+                    bsdf: material.at(place, wo, azimuth, u),
                     frame,
                     hit: *hit,
                     strands: &scene.strands,

@@ -25,6 +25,8 @@ pub struct StrandHit {
     pub strand: u32,
     /// Hair class of the strand.
     pub class: u8,
+    /// Part of the coat's pattern that the strand belongs to.
+    pub coat: u8,
     /// Position along the strand by arc length, 0 root .. 1 tip.
     pub at: f32,
     /// Distance from the tip along the strand, millimeters.
@@ -47,6 +49,7 @@ pub struct Leaving {
 #[derive(Clone, Copy, Debug)]
 struct Strand {
     class: u8,
+    coat: u8,
     length_mm: f32,
     id: u32,
     root_uv: Vec2,
@@ -107,6 +110,7 @@ impl Strands {
         let strands = (0..count)
             .map(|i| Strand {
                 class: groom.class[i],
+                coat: groom.coat.get(i).copied().unwrap_or_default(),
                 length_mm: all.length_mm[i],
                 id: groom.id.get(i).copied().unwrap_or(i as u32),
                 root_uv: groom.root_uv.get(i).copied().unwrap_or_default(),
@@ -221,7 +225,10 @@ impl Strands {
         let joint = self.first_joint[prim] as usize;
         let strand = self.strand_of[joint];
         let Strand {
-            class, length_mm, ..
+            class,
+            coat,
+            length_mm,
+            ..
         } = self.strands[strand as usize];
         let at = self.at[joint] + along * (self.at[joint + 1] - self.at[joint]);
         let tangent = self.tangent(joint, along);
@@ -234,6 +241,7 @@ impl Strands {
             segment: joint as u32,
             strand,
             class,
+            coat,
             at,
             tip_mm: (1.0 - at) * length_mm,
             tangent,
