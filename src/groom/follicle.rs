@@ -99,6 +99,11 @@ impl<'a> Surface<'a> {
         self.blend(follicle, &self.skin.uvs)
     }
 
+    /// Triangle of a follicle, and the weights of the triangle's second and third corner there.
+    pub(super) fn place(&self, follicle: &Follicle) -> (u32, Vec2) {
+        (follicle.triangle, follicle.barycentric.into())
+    }
+
     /// The skin at a follicle.
     pub(super) fn root(&self, follicle: &Follicle) -> Root {
         let normal = self.blend(follicle, &self.skin.normals);

@@ -41,6 +41,10 @@ pub struct Groom {
     pub id: Vec<u32>,
     /// Texture coordinates of each root.
     pub root_uv: Vec<Vec2>,
+    /// Triangle of the skin that each root lies on.
+    pub root_triangle: Vec<u32>,
+    /// Where each root lies on its triangle: the weights of its second and third corner.
+    pub root_barycentric: Vec<Vec2>,
     /// Arc length of each strand along its control points, meters.
     pub length: Vec<f32>,
     /// Direction that the flat side of each strand's section faces at the root: unit, along the minor
@@ -76,6 +80,35 @@ pub struct GroomSettings {
     pub strands: Option<usize>,
     /// Seed of everything random. The same seed and skin give nested grooms for any `strands`.
     pub seed: u64,
+}
+
+/// Size of a groom that has not been grown yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Forecast {
+    /// Strands of all classes.
+    pub strands: usize,
+    /// Control points of all strands.
+    pub points: usize,
+}
+
+/// How large the groom will be that [`grow`] makes of the same arguments.
+///
+/// # Errors
+/// As [`grow`], before it begins.
+pub fn forecast(
+    skin: &Skin,
+    species: &Species,
+    strands: Option<usize>,
+) -> Result<Forecast, GroomError> {
+    let area = Surface::new(skin)?.weighted_area();
+    let plan = plan::plan(skin, area, species, strands)?;
+    let points = plan.iter().zip(&species.classes);
+    Ok(Forecast {
+        strands: plan.iter().map(|c| c.strands).sum(),
+        points: points
+            .map(|(plan, class)| plan.strands * strand::points_of(&class.groom))
+            .sum(),
+    })
 }
 
 /// Grows the fur of `species` on `skin`: strands sorted by class, then by rank.
@@ -156,6 +189,9 @@ pub fn grow(
             groom.class.push(class as u8);
             groom.id.push((class as u32) << CLASS_SHIFT | rank as u32);
             groom.root_uv.push(surface.uv(follicle));
+            let (triangle, barycentric) = surface.place(follicle);
+            groom.root_triangle.push(triangle);
+            groom.root_barycentric.push(barycentric);
             groom
                 .length
                 .push(arc_length(&groom.points[end - per_strand..end]));

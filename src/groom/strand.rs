@@ -55,6 +55,15 @@ const GROUND_GAP: f32 = 4e-4;
 const TAPER: f64 = 1.5;
 const TIP: f64 = 0.08;
 
+/// Control points of each strand of a class.
+pub(super) fn points_of(class: &ClassGroom) -> usize {
+    if class.length_mm > LONG_MM {
+        POINTS_LONG
+    } else {
+        POINTS
+    }
+}
+
 /// Grows strands of one class.
 pub(super) struct Grower<'a> {
     class: &'a ClassGroom,
@@ -92,11 +101,7 @@ impl<'a> Grower<'a> {
         seed: u64,
         width_scale: f64,
     ) -> Self {
-        let points = if class.length_mm > LONG_MM {
-            POINTS_LONG
-        } else {
-            POINTS
-        };
+        let points = points_of(class);
         // Hanging hair turns within its first centimeters: its points crowd there.
         let crowding = 1.0 + skin.gravity.clamp(0.0, 1.0);
         let zetas: Vec<f32> = (0..points)

@@ -424,3 +424,19 @@ fn flat_hairs_lie_with_their_flat_side_to_the_skin() {
         );
     }
 }
+
+#[test]
+fn roots_know_their_triangle_and_the_forecast_its_size() {
+    let (skin, fox) = (skin::load("ball").unwrap(), fox());
+    let groom = grown(&skin, &fox, 2_000, 3);
+    for i in 0..groom.strands() {
+        let [a, b, c] = skin.corners(groom.root_triangle[i] as usize);
+        let [u, v] = groom.root_barycentric[i].to_array();
+        assert!(u >= 0.0 && v >= 0.0 && u + v <= 1.0);
+        let root = a * (1.0 - u - v) + b * u + c * v;
+        assert!(root.distance(groom.strand(i)[0]) < 1e-5, "strand {i}");
+    }
+    let forecast = forecast(&skin, &fox, Some(2_000)).unwrap();
+    assert_eq!(forecast.strands, groom.strands());
+    assert_eq!(forecast.points, groom.points.len());
+}
