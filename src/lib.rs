@@ -20,6 +20,7 @@ pub mod blame;
 pub mod bsdf;
 pub mod cli;
 pub mod color;
+pub mod export;
 pub mod fiber;
 pub mod gallery;
 pub mod groom;
