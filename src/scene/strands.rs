@@ -45,6 +45,13 @@ pub struct Leaving {
     clear: f32,
 }
 
+impl Leaving {
+    /// Distance along the ray within which the strand that it leaves is not there, millimeters.
+    pub fn clear(&self) -> f32 {
+        self.clear
+    }
+}
+
 /// What is kept of each strand.
 #[derive(Clone, Copy, Debug)]
 struct Strand {
