@@ -7,6 +7,7 @@
 mod bake;
 mod cache;
 mod console;
+mod export;
 mod failure;
 mod fiber;
 mod gallery;
@@ -48,6 +49,8 @@ enum Command {
     Merge(merge::Args),
     /// Render a still of a species: bakes what it needs, grows the fur, traces the picture.
     Render(render::Args),
+    /// Write the fur of a species for other programs: Universal Scene Description.
+    Export(export::Args),
     /// Look into scattering tables, dye them, draw them.
     Table(table::Args),
     /// Show or clear the cache of baked tables.
@@ -99,6 +102,7 @@ fn end_in_order(panic: &std::panic::PanicHookInfo<'_>) {
 fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
     match command {
         Command::Render(args) => render::run(&args, console),
+        Command::Export(args) => export::run(&args, console),
         Command::Schema(args) => schema::run(&args, console),
         Command::Species(args) => species::run(&args, console),
         Command::Table(args) => table::run(&args, console),

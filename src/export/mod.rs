@@ -1,3 +1,38 @@
 //! Files for other programs.
+//!
+//! [`usd`] and [`vdb`] are formats and know nothing of fur; [`asset`] makes a component asset of a groom.
 
+pub mod asset;
+mod error;
+pub mod usd;
 pub mod vdb;
+
+pub use error::ExportError;
+
+use std::path::Path;
+
+/// What a groom can be written as, by the suffix of the file's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// `.usda`: Universal Scene Description as text.
+    UsdText,
+    /// `.usdc` and `.usd`: the same in binary form.
+    UsdBinary,
+}
+
+impl Format {
+    /// The format that the name of a file asks for.
+    ///
+    /// # Errors
+    /// [`ExportError::Suffix`] lists what there is.
+    pub fn of(path: &Path) -> Result<Self, ExportError> {
+        let suffix = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+        match suffix.to_ascii_lowercase().as_str() {
+            "usda" => Ok(Self::UsdText),
+            "usdc" | "usd" => Ok(Self::UsdBinary),
+            _ => Err(ExportError::Suffix {
+                path: path.to_owned(),
+            }),
+        }
+    }
+}

@@ -83,15 +83,27 @@ pub struct GroomSettings {
 }
 
 /// Size of a groom that has not been grown yet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Forecast {
     /// Strands of all classes.
     pub strands: usize,
     /// Control points of all strands.
     pub points: usize,
+    /// Each class of the species.
+    pub classes: Vec<ClassForecast>,
 }
 
-/// How large the groom will be that [`grow`] makes of the same arguments.
+/// Size of a class of a groom that has not been grown yet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClassForecast {
+    /// Strands.
+    pub strands: usize,
+    /// As [`Groom::width_scale`].
+    pub width_scale: f32,
+}
+
+/// How large the groom will be that [`grow`] makes of the same arguments. The strands of a class that a
+/// smaller groom has are those of lowest rank of a larger one.
 ///
 /// # Errors
 /// As [`grow`], before it begins.
@@ -103,11 +115,19 @@ pub fn forecast(
     let area = Surface::new(skin)?.weighted_area();
     let plan = plan::plan(skin, area, species, strands)?;
     let points = plan.iter().zip(&species.classes);
+    let points = points
+        .map(|(plan, class)| plan.strands * strand::points_of(&class.groom))
+        .sum();
+    let classes: Vec<ClassForecast> = (plan.iter())
+        .map(|class| ClassForecast {
+            strands: class.strands,
+            width_scale: class.width_scale as f32,
+        })
+        .collect();
     Ok(Forecast {
-        strands: plan.iter().map(|c| c.strands).sum(),
-        points: points
-            .map(|(plan, class)| plan.strands * strand::points_of(&class.groom))
-            .sum(),
+        strands: classes.iter().map(|c| c.strands).sum(),
+        points,
+        classes,
     })
 }
 

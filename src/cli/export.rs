@@ -1,0 +1,270 @@
+//! `vair export`: the fur of a species for other programs.
+
+use super::{Console, Failure, bake::parse_count};
+use crate::blame::Blame;
+use crate::export::asset::{
+    self, AssetSettings, Curves, Frame, Parts, Profile, READERS, Units, Up,
+};
+use crate::export::{ExportError, Format};
+use crate::groom::{self, Forecast, GroomSettings};
+use crate::io::check_writable;
+use crate::skin;
+use crate::species;
+use std::path::PathBuf;
+
+/// Text of more bytes than this is refused, and of more than the other remarked upon.
+const MOST_TEXT: u64 = 2_000_000_000;
+const MUCH_TEXT: u64 = 50_000_000;
+
+/// Levels of detail that have names.
+const MOST_LEVELS: usize = 4;
+
+/// Arguments of `vair export`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  vair export red-fox -o fox.usdc
+  vair export mink --skin sofa.obj --strands 1e6 -o sofa.usdc
+  vair export red-fox --profile unreal --units cm --up z -o fox.usd
+  vair export lynx --profile blender --levels 1 -o lynx.usdc
+  vair export cat --strands 500 --curves phantom -o cat.usda
+
+The file is a component asset: under its default prim stand the skin as a mesh (geo/skin), the strands
+as curves, one prim a hair class (geo/render), few wide strands for viewports (geo/proxy) and guides
+(geo/guide). Levels of detail are the variants of `lod`; a coarser one has a quarter of the strands of
+the one before, the same strands, wider so that the coat stays opaque.
+
+Widths are diameters in the units of the file. The same command gives the same bytes on any number of
+threads.")]
+pub(super) struct Args {
+    /// A built-in species or a path to a species file.
+    name: String,
+    /// What the fur grows on: body, ball, swatch, tress, or an OBJ, PLY or glTF mesh in meters.
+    #[arg(long, default_value = "body")]
+    skin: String,
+    /// Strands in all; if not given, as many as the animal has, at most 250000.
+    #[arg(long, value_parser = parse_count)]
+    strands: Option<u64>,
+    /// Seed of the fur.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// How strands are written; pinned is read by most.
+    #[arg(long, value_enum, default_value = "pinned")]
+    curves: CurvesArg,
+    /// Unit of length of the file.
+    #[arg(long, value_enum, default_value = "m")]
+    units: UnitsArg,
+    /// Axis of the file that points up.
+    #[arg(long, value_enum, default_value = "y")]
+    up: UpArg,
+    /// Who is to read the file: all, or some of blender, unreal, houdini, arnold, renderman, omniverse
+    /// and storm. Attributes that none of them reads are left out.
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "READERS",
+        default_value = "all"
+    )]
+    profile: Vec<String>,
+    /// Levels of detail, 1 to 4.
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    levels: usize,
+    /// Leave out the few wide strands for viewports.
+    #[arg(long)]
+    no_proxy: bool,
+    /// Leave out the guides.
+    #[arg(long)]
+    no_guides: bool,
+    /// Threads; all cores if not given. The file does not depend on it.
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Override a field of the species: `guard.groom.length_mm=20`. May repeat.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Where the fur goes: .usdc, .usd or .usda. May repeat.
+    #[arg(long, short, required = true)]
+    output: Vec<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum CurvesArg {
+    /// Catmull-Rom through all points, pinned at its ends.
+    Pinned,
+    /// Catmull-Rom with a point beyond each end, for RenderMan up to 25 and USD before 22.11.
+    Phantom,
+    /// Bezier, for readers that know no other cubic curve.
+    Bezier,
+    /// Straight pieces.
+    Linear,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum UnitsArg {
+    /// Meters.
+    M,
+    /// Centimeters.
+    Cm,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum UpArg {
+    /// Y.
+    Y,
+    /// Z.
+    Z,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// What was refused, what could not be written, or stopped; no file is left half-written.
+pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
+    super::with_threads(args.threads, || run_here(args, console))?
+}
+
+impl From<ExportError> for Failure {
+    fn from(error: ExportError) -> Self {
+        match error.remedy() {
+            Some(help) => Self::with_help(error.blame(), &error, help),
+            None => Self::new(error.blame(), error),
+        }
+    }
+}
+
+fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
+    // All that can be refused is refused before any work.
+    let species = species::load(&args.name, &args.set)?;
+    let settings = settings(args)?;
+    for output in &args.output {
+        Format::of(output)?;
+        check_writable(output)?;
+    }
+    let skin = skin::load(&args.skin)?;
+    for warning in &skin.warnings {
+        console.say(format!("warning: {warning}"));
+    }
+    let strands = args.strands.map(|n| n as usize);
+    let forecast = groom::forecast(&skin, &species, strands)?;
+    announce(args, &settings, &forecast, console)?;
+
+    let cancel = console.cancel();
+    let grown = GroomSettings {
+        strands,
+        seed: args.seed,
+    };
+    let groom = groom::grow(&skin, &species, &grown, console, cancel)?;
+    let levels = asset::levels(&groom, &skin, &species, args.levels)?;
+    let parts = Parts {
+        groom: &groom,
+        skin: &skin,
+        species: &species,
+        levels: &levels,
+        seed: args.seed,
+    };
+    for output in &args.output {
+        asset::write(output, &parts, &settings, console, cancel)?;
+        console.say(format!("{}: {}", output.display(), described(&parts)));
+    }
+    Ok(())
+}
+
+/// What was asked for in the words of the library.
+fn settings(args: &Args) -> Result<AssetSettings, Failure> {
+    if !(1..=MOST_LEVELS).contains(&args.levels) {
+        let message = format!("--levels is {}, must be 1 to {MOST_LEVELS}", args.levels);
+        return Err(Failure::new(Blame::Input, message));
+    }
+    let mut readers = Vec::new();
+    for name in args.profile.iter().map(|name| name.trim()) {
+        if name == "all" {
+            readers.clear();
+            break;
+        }
+        let Some((_, reader)) = READERS.iter().find(|(known, _)| *known == name) else {
+            let known: Vec<&str> = READERS.iter().map(|(name, _)| *name).collect();
+            return Err(Failure::with_help(
+                Blame::Input,
+                format!("`{name}` is no reader that --profile knows"),
+                format!("there are all, {}", known.join(", ")),
+            ));
+        };
+        readers.push(*reader);
+    }
+    Ok(AssetSettings {
+        curves: match args.curves {
+            CurvesArg::Pinned => Curves::Pinned,
+            CurvesArg::Phantom => Curves::Phantom,
+            CurvesArg::Bezier => Curves::Bezier,
+            CurvesArg::Linear => Curves::Linear,
+        },
+        frame: Frame {
+            units: match args.units {
+                UnitsArg::M => Units::Meters,
+                UnitsArg::Cm => Units::Centimeters,
+            },
+            up: match args.up {
+                UpArg::Y => Up::Y,
+                UpArg::Z => Up::Z,
+            },
+        },
+        profile: Profile::of(&readers),
+        no_proxy: args.no_proxy,
+        no_guides: args.no_guides,
+    })
+}
+
+/// Says how large the files will be, and refuses text that nobody could open.
+fn announce(
+    args: &Args,
+    settings: &AssetSettings,
+    forecast: &Forecast,
+    console: &Console,
+) -> Result<(), Failure> {
+    /// Bytes of a control point and of a strand in memory.
+    const OF_POINT: usize = 16;
+    const OF_STRAND: usize = 64;
+    let (strands, points) = (forecast.strands, forecast.points);
+    let binary = asset::estimate(strands, points, args.levels, settings);
+    let memory = 2 * (points * OF_POINT + strands * OF_STRAND);
+    console.say(format!(
+        "{strands} strands of {points} points: about {} in binary form, {} of memory",
+        megabytes(binary),
+        megabytes(memory as u64)
+    ));
+    for output in &args.output {
+        let text = 4 * binary;
+        if Format::of(output)? != Format::UsdText || text <= MUCH_TEXT {
+            continue;
+        }
+        let remark = format!(
+            "{} would be about {} of text",
+            output.display(),
+            megabytes(text)
+        );
+        let help = "write .usdc, which is a quarter of that and opens in a fraction of the time";
+        if text > MOST_TEXT {
+            return Err(Failure::with_help(Blame::Input, remark, help));
+        }
+        console.say(format!("warning: {remark}: {help}"));
+    }
+    Ok(())
+}
+
+fn megabytes(bytes: u64) -> String {
+    match bytes {
+        b if b >= 10_000_000 => format!("{} MB", b / 1_000_000),
+        b => format!("{:.1} MB", b as f64 / 1e6),
+    }
+}
+
+/// Strands of every class and level.
+fn described(parts: &Parts<'_>) -> String {
+    let levels: Vec<String> = (parts.levels.iter())
+        .map(|level| {
+            let counts: Vec<String> = (level.classes.iter().zip(&parts.groom.classes))
+                .map(|(of_level, class)| format!("{} {class}", of_level.strands.len()))
+                .collect();
+            format!("{} {}", level.name, counts.join(" + "))
+        })
+        .collect();
+    levels.join(", ")
+}

@@ -1,0 +1,95 @@
+//! A groom as a component asset: skin, curves of every hair class, materials, levels of detail.
+//!
+//! ```text
+//! /red_fox            Xform, kind component, GroomAPI; variant set `lod`
+//!   /geo/skin         Mesh
+//!   /geo/render/...   BasisCurves a hair class
+//!   /geo/proxy/...    the same, few and wide, for viewports
+//!   /geo/guide/...    some guard hairs at their places, with rest points
+//!   /mtl/...          Material a hair class, and one of the skin
+//! ```
+
+mod color;
+mod curves;
+mod frame;
+mod levels;
+mod profile;
+mod provenance;
+mod skin;
+mod strands;
+mod tree;
+mod write;
+
+pub use curves::Curves;
+pub use frame::{Frame, Units, Up};
+pub use levels::{Level, LevelClass, levels};
+pub use profile::{Column, Profile, READERS, Reader};
+pub use tree::layer;
+pub use write::{estimate, write};
+
+use super::ExportError;
+use crate::groom::Groom;
+use crate::skin::Skin;
+use crate::species::Species;
+use rayon::prelude::*;
+
+/// What a component asset is made of.
+pub struct Parts<'a> {
+    /// The fur.
+    pub groom: &'a Groom,
+    /// What it grew on.
+    pub skin: &'a Skin,
+    /// The animal.
+    pub species: &'a Species,
+    /// Levels of detail, the finest first; never empty.
+    pub levels: &'a [Level],
+    /// Seed of the groom.
+    pub seed: u64,
+}
+
+/// How a component asset is written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct AssetSettings {
+    /// Kind of curves.
+    pub curves: Curves,
+    /// Units and axes.
+    pub frame: Frame,
+    /// Who is to read it.
+    pub profile: Profile,
+    /// Without few wide strands for viewports.
+    pub no_proxy: bool,
+    /// Without guides.
+    pub no_guides: bool,
+}
+
+/// Refuses grooms that readers would drop.
+///
+/// # Errors
+/// [`ExportError::Empty`] and [`ExportError::NotFinite`].
+pub fn check(groom: &Groom) -> Result<(), ExportError> {
+    if groom.strands() == 0 {
+        return Err(ExportError::Empty);
+    }
+    let fault = |index: usize| -> Option<&'static str> {
+        let range = groom.offsets[index] as usize..groom.offsets[index + 1] as usize;
+        if !groom.points[range.clone()].iter().all(|p| p.is_finite()) {
+            return Some("a point");
+        }
+        if !groom.widths[range].iter().all(|w| w.is_finite()) {
+            return Some("a width");
+        }
+        (!groom.root_uv[index].is_finite()).then_some("a texture coordinate")
+    };
+    let first = (0..groom.strands())
+        .into_par_iter()
+        .with_min_len(4096)
+        .find_first(|&index| fault(index).is_some());
+    match first {
+        None => Ok(()),
+        Some(index) => Err(ExportError::NotFinite {
+            id: groom.id[index],
+            index,
+            what: fault(index).unwrap_or_default(),
+        }),
+    }
+}

@@ -1,0 +1,72 @@
+//! What a file says of where it comes from.
+
+use super::Parts;
+use crate::export::usd::{Attribute, Dictionary, Prim, Value};
+use sha2::{Digest as _, Sha256};
+
+/// Name of a species as an identifier.
+pub(super) fn identifier(name: &str) -> String {
+    let mut out: String = name
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
+        .collect();
+    if out.is_empty() || out.starts_with(|c: char| c.is_ascii_digit()) {
+        out.insert(0, '_');
+    }
+    out
+}
+
+/// First half of the hash of a species file.
+fn hash(text: &str) -> String {
+    let digest = Sha256::digest(text.as_bytes());
+    digest[..8].iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// `assetInfo` of the root.
+pub(super) fn asset_info<'a>(parts: &Parts<'_>, file: &str) -> Dictionary<'a> {
+    vec![
+        ("identifier".to_owned(), Value::Asset(format!("./{file}"))),
+        ("name".to_owned(), Value::string(&parts.species.id)),
+        (
+            "version".to_owned(),
+            Value::string(hash(&parts.species.text)),
+        ),
+    ]
+}
+
+/// Everything that makes the same groom again.
+pub(super) fn recipe<'a>(parts: &Parts<'_>) -> Dictionary<'a> {
+    let species = parts.species;
+    let entries = vec![
+        ("program", Value::string(PROGRAM)),
+        ("seed", Value::string(parts.seed.to_string())),
+        ("skin", Value::string(&parts.skin.name)),
+        ("species", Value::string(&species.id)),
+        ("species_sha256_64", Value::string(hash(&species.text))),
+        ("species_text", Value::string(&species.text)),
+        ("strands", Value::Int(parts.groom.strands() as i32)),
+    ];
+    let entries = entries.into_iter().map(|(k, v)| (k.to_owned(), v));
+    vec![("vair".to_owned(), Value::Dictionary(entries.collect()))]
+}
+
+/// Name and version of this program.
+pub(super) const PROGRAM: &str = concat!("vair ", env!("CARGO_PKG_VERSION"));
+
+/// What Blender shows as custom properties.
+pub(super) fn user_properties(prim: &mut Prim<'_>, properties: &[(&str, Value<'static>)]) {
+    for (name, value) in properties {
+        prim.add(Attribute {
+            name: format!("userProperties:vair_{name}"),
+            type_name: match value {
+                Value::Float(_) => "float",
+                Value::Int(_) => "int",
+                Value::Vec3(_) => "float3",
+                _ => "string",
+            },
+            custom: true,
+            value: Some(value.clone()),
+            ..Attribute::default()
+        });
+    }
+}

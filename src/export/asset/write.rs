@@ -1,0 +1,92 @@
+//! Writing an asset, and how large it will be.
+
+use super::{AssetSettings, Column, Parts, check, tree};
+use crate::export::usd::{self, Form};
+use crate::export::{ExportError, Format};
+use crate::io::{AtomicFile, FileError};
+use crate::progress::{Cancel, Progress};
+use std::io;
+use std::path::Path;
+
+/// All columns that strands can have.
+const COLUMNS: [Column; 12] = [
+    Column::RootUv,
+    Column::GroomRootUv,
+    Column::SurfaceUv,
+    Column::SkinPrim,
+    Column::CurveId,
+    Column::GroomId,
+    Column::GroomGroup,
+    Column::GroomGuide,
+    Column::DisplayColor,
+    Column::GroomColor,
+    Column::Melanin,
+    Column::Absorption,
+];
+
+/// Bytes of the arrays of an asset in binary form, to a few percent; text takes about four times as many.
+///
+/// * `levels`: of detail, each with a quarter of the strands of the one before.
+pub fn estimate(strands: usize, points: usize, levels: usize, settings: &AssetSettings) -> u64 {
+    let wanted = COLUMNS.iter().filter(|c| settings.profile.wants(**c));
+    let (mut of_strand, mut of_point) = (0, 16);
+    for column in wanted {
+        let (strand, point) = column.bytes();
+        of_strand += strand;
+        of_point += point;
+    }
+    let full = strands * of_strand + settings.curves.count(points) * of_point;
+    let share: f64 = (0..levels.max(1))
+        .map(|level| 0.25f64.powi(level as i32))
+        .sum();
+    (full as f64 * share) as u64
+}
+
+/// Writes a groom as a component asset into one file, whole or not at all.
+///
+/// The bytes are a function of the arguments alone, not of the number of threads.
+///
+/// # Errors
+/// [`ExportError`]: a groom that readers would drop, the file, or stopped.
+pub fn write(
+    path: &Path,
+    parts: &Parts<'_>,
+    settings: &AssetSettings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<(), ExportError> {
+    let form = match Format::of(path)? {
+        Format::UsdText => Form::Text,
+        Format::UsdBinary => Form::Binary,
+    };
+    check(parts.groom)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let layer = tree::layer(parts, settings, &name);
+    let groom = parts.groom;
+    let size = estimate(
+        groom.strands(),
+        groom.points.len(),
+        parts.levels.len(),
+        settings,
+    );
+    let size = match form {
+        Form::Text => 4 * size,
+        Form::Binary => size,
+    };
+    progress.begin("writing", size, "bytes");
+    let mut file = AtomicFile::create(path)?;
+    let written = usd::write(&layer, form, &mut file, &mut |bytes| {
+        progress.advance(bytes);
+        if cancel.is_cancelled() {
+            return Err(io::Error::other("stopped"));
+        }
+        Ok(())
+    });
+    progress.finish();
+    match written {
+        Err(_) if cancel.is_cancelled() => return Err(ExportError::Cancelled),
+        Err(error) => return Err(FileError::new("write", path, error).into()),
+        Ok(()) => file.commit()?,
+    }
+    Ok(())
+}

@@ -1,0 +1,412 @@
+//! The text form of a layer, `.usda`.
+//!
+//! Numbers are written with as few digits as give the same bits back.
+
+use super::layer::{Attribute, Layer, Prim, Property, VariantSet};
+use super::pieces;
+use super::value::{Array, Dictionary, Value};
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+/// Writes a layer as text.
+///
+/// * `wrote`: hears how many bytes went out; an error of its own stops the writing.
+pub(super) fn write(
+    layer: &Layer<'_>,
+    out: &mut dyn Write,
+    wrote: &mut dyn FnMut(u64) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut text = Text {
+        out,
+        wrote,
+        depth: 0,
+    };
+    text.out.write_all(b"#usda 1.0\n")?;
+    text.layer_metadata(layer)?;
+    for prim in &layer.prims {
+        text.out.write_all(b"\n")?;
+        text.prim(prim)?;
+    }
+    Ok(())
+}
+
+struct Text<'o> {
+    out: &'o mut dyn Write,
+    wrote: &'o mut dyn FnMut(u64) -> io::Result<()>,
+    depth: usize,
+}
+
+impl Text<'_> {
+    fn line(&mut self, line: &str) -> io::Result<()> {
+        self.begin()?;
+        writeln!(self.out, "{line}")
+    }
+
+    fn begin(&mut self) -> io::Result<()> {
+        write!(self.out, "{:1$}", "", 4 * self.depth)
+    }
+
+    fn open(&mut self, bracket: &str) -> io::Result<()> {
+        self.line(bracket)?;
+        self.depth += 1;
+        Ok(())
+    }
+
+    fn close(&mut self, bracket: &str) -> io::Result<()> {
+        self.depth -= 1;
+        self.line(bracket)
+    }
+
+    fn layer_metadata(&mut self, layer: &Layer<'_>) -> io::Result<()> {
+        self.open("(")?;
+        self.documentation(&layer.documentation)?;
+        self.dictionary("customLayerData", &layer.custom_data)?;
+        self.line(&format!("defaultPrim = {}", quoted(&layer.default_prim)))?;
+        self.line(&format!(
+            "metersPerUnit = {}",
+            double(layer.meters_per_unit)
+        ))?;
+        self.line(&format!("upAxis = {}", quoted(layer.up_axis)))?;
+        self.close(")")
+    }
+
+    fn documentation(&mut self, text: &str) -> io::Result<()> {
+        if text.is_empty() {
+            return Ok(());
+        }
+        self.line(&format!("doc = {}", quoted(text)))
+    }
+
+    fn prim(&mut self, prim: &Prim<'_>) -> io::Result<()> {
+        let space = if prim.type_name.is_empty() { "" } else { " " };
+        self.begin()?;
+        write!(
+            self.out,
+            "{}{space}{} {}",
+            prim.specifier.name(),
+            prim.type_name,
+            quoted(&prim.name)
+        )?;
+        self.body(prim)
+    }
+
+    /// Metadata and content after a prim's or variant's name.
+    fn body(&mut self, prim: &Prim<'_>) -> io::Result<()> {
+        if has_metadata(prim) {
+            self.out.write_all(b" (\n")?;
+            self.depth += 1;
+            self.prim_metadata(prim)?;
+            self.close(")")?;
+        } else {
+            self.out.write_all(b"\n")?;
+        }
+        self.open("{")?;
+        for property in &prim.properties {
+            self.property(property)?;
+        }
+        for child in &prim.children {
+            self.out.write_all(b"\n")?;
+            self.prim(child)?;
+        }
+        for set in &prim.variant_sets {
+            self.out.write_all(b"\n")?;
+            self.variant_set(set)?;
+        }
+        self.close("}")
+    }
+
+    fn prim_metadata(&mut self, prim: &Prim<'_>) -> io::Result<()> {
+        self.documentation(&prim.documentation)?;
+        if !prim.kind.is_empty() {
+            self.line(&format!("kind = {}", quoted(prim.kind)))?;
+        }
+        if !prim.api_schemas.is_empty() {
+            self.line(&format!("prepend apiSchemas = {}", list(&prim.api_schemas)))?;
+        }
+        self.dictionary("assetInfo", &prim.asset_info)?;
+        self.dictionary("customData", &prim.custom_data)?;
+        if let Some(payload) = &prim.payload {
+            self.line(&format!("prepend payload = @{payload}@"))?;
+        }
+        if !prim.variant_sets.is_empty() {
+            let names: Vec<String> = prim.variant_sets.iter().map(|s| s.name.clone()).collect();
+            self.line(&format!("prepend variantSets = {}", list(&names)))?;
+        }
+        if !prim.selections.is_empty() {
+            self.open("variants = {")?;
+            for (set, variant) in &prim.selections {
+                self.line(&format!("string {set} = {}", quoted(variant)))?;
+            }
+            self.close("}")?;
+        }
+        Ok(())
+    }
+
+    fn variant_set(&mut self, set: &VariantSet<'_>) -> io::Result<()> {
+        self.open(&format!("variantSet {} = {{", quoted(&set.name)))?;
+        for variant in &set.variants {
+            self.begin()?;
+            write!(self.out, "{}", quoted(&variant.name))?;
+            self.body(variant)?;
+        }
+        self.close("}")
+    }
+
+    fn dictionary(&mut self, name: &str, dictionary: &Dictionary<'_>) -> io::Result<()> {
+        if dictionary.is_empty() {
+            return Ok(());
+        }
+        self.open(&format!("{name} = {{"))?;
+        for (key, value) in dictionary {
+            if let Value::Dictionary(inner) = value {
+                self.dictionary(&format!("dictionary {key}"), inner)?;
+                continue;
+            }
+            self.begin()?;
+            write!(self.out, "{} {key} = ", type_of(value))?;
+            self.value(value)?;
+            self.out.write_all(b"\n")?;
+        }
+        self.close("}")
+    }
+
+    fn property(&mut self, property: &Property<'_>) -> io::Result<()> {
+        match property {
+            Property::Attribute(attribute) => self.attribute(attribute),
+            Property::Relationship { name, targets } => {
+                let paths: Vec<String> = targets.iter().map(|t| format!("<{t}>")).collect();
+                match paths.as_slice() {
+                    [one] => self.line(&format!("rel {name} = {one}")),
+                    more => self.line(&format!("rel {name} = [{}]", more.join(", "))),
+                }
+            }
+        }
+    }
+
+    fn attribute(&mut self, attribute: &Attribute<'_>) -> io::Result<()> {
+        let custom = if attribute.custom { "custom " } else { "" };
+        let uniform = if attribute.uniform { "uniform " } else { "" };
+        let declared = format!(
+            "{custom}{uniform}{} {}",
+            attribute.type_name, attribute.name
+        );
+        if attribute.value.is_some() || attribute.connection.is_none() {
+            self.begin()?;
+            self.out.write_all(declared.as_bytes())?;
+            if let Some(value) = &attribute.value {
+                self.out.write_all(b" = ")?;
+                self.value(value)?;
+            }
+            self.attribute_metadata(attribute)?;
+            self.out.write_all(b"\n")?;
+        }
+        if let Some(source) = &attribute.connection {
+            self.line(&format!("{declared}.connect = <{source}>"))?;
+        }
+        Ok(())
+    }
+
+    fn attribute_metadata(&mut self, attribute: &Attribute<'_>) -> io::Result<()> {
+        if attribute.interpolation.is_empty() && attribute.documentation.is_empty() {
+            return Ok(());
+        }
+        self.out.write_all(b" (\n")?;
+        self.depth += 1;
+        self.documentation(&attribute.documentation)?;
+        if !attribute.interpolation.is_empty() {
+            self.line(&format!(
+                "interpolation = {}",
+                quoted(attribute.interpolation)
+            ))?;
+        }
+        self.depth -= 1;
+        self.begin()?;
+        self.out.write_all(b")")
+    }
+
+    fn value(&mut self, value: &Value<'_>) -> io::Result<()> {
+        let text = match value {
+            Value::Array(array) => return self.array(array),
+            Value::Bool(value) => u8::from(*value).to_string(),
+            Value::Int(value) => value.to_string(),
+            Value::Float(value) => float(*value),
+            Value::Double(value) => double(*value),
+            Value::Vec2(value) => tuple(value),
+            Value::Vec3(value) => tuple(value),
+            Value::String(text) | Value::Token(text) => quoted(text),
+            Value::Asset(path) => format!("@{path}@"),
+            Value::Tokens(texts) | Value::Strings(texts) => list(texts),
+            // Dictionaries have a form of their own, see `dictionary`.
+            Value::Dictionary(_) => String::new(),
+        };
+        self.out.write_all(text.as_bytes())
+    }
+
+    fn array(&mut self, array: &Array<'_>) -> io::Result<()> {
+        let (out, wrote) = (&mut *self.out, &mut *self.wrote);
+        out.write_all(b"[")?;
+        match array {
+            Array::Int(rows) => pieces::write(
+                rows,
+                out,
+                |values, first, bytes| {
+                    separated(values, first, bytes, |value, text| {
+                        let _ = write!(text, "{value}");
+                    });
+                },
+                wrote,
+            ),
+            Array::Float(rows) => pieces::write(
+                rows,
+                out,
+                |values, first, bytes| separated(values, first, bytes, |v, text| push(*v, text)),
+                wrote,
+            ),
+            Array::Vec2(rows) => pieces::write(
+                rows,
+                out,
+                |values, first, bytes| {
+                    separated(values, first, bytes, |v, text| push_tuple(v, text))
+                },
+                wrote,
+            ),
+            Array::Vec3(rows) => pieces::write(
+                rows,
+                out,
+                |values, first, bytes| {
+                    separated(values, first, bytes, |v, text| push_tuple(v, text))
+                },
+                wrote,
+            ),
+        }?;
+        self.out.write_all(b"]")
+    }
+}
+
+fn has_metadata(prim: &Prim<'_>) -> bool {
+    !(prim.documentation.is_empty()
+        && prim.kind.is_empty()
+        && prim.api_schemas.is_empty()
+        && prim.asset_info.is_empty()
+        && prim.custom_data.is_empty()
+        && prim.payload.is_none()
+        && prim.variant_sets.is_empty()
+        && prim.selections.is_empty())
+}
+
+fn type_of(value: &Value<'_>) -> &'static str {
+    match value {
+        Value::Bool(_) => "bool",
+        Value::Int(_) => "int",
+        Value::Float(_) => "float",
+        Value::Double(_) => "double",
+        Value::Vec2(_) => "float2",
+        Value::Vec3(_) => "float3",
+        Value::String(_) => "string",
+        Value::Token(_) => "token",
+        Value::Asset(_) => "asset",
+        Value::Tokens(_) => "token[]",
+        Value::Strings(_) => "string[]",
+        Value::Dictionary(_) => "dictionary",
+        Value::Array(array) => match **array {
+            Array::Int(_) => "int[]",
+            Array::Float(_) => "float[]",
+            Array::Vec2(_) => "float2[]",
+            Array::Vec3(_) => "float3[]",
+        },
+    }
+}
+
+/// Appends values with commas between them; also before the first, unless it is the first of all.
+fn separated<T>(values: &[T], first: bool, bytes: &mut Vec<u8>, push: impl Fn(&T, &mut String)) {
+    let mut text = String::with_capacity(32 * values.len());
+    for (index, value) in values.iter().enumerate() {
+        if index > 0 || !first {
+            text.push_str(", ");
+        }
+        push(value, &mut text);
+    }
+    bytes.extend(text.into_bytes());
+}
+
+fn list(texts: &[String]) -> String {
+    let quoted: Vec<String> = texts.iter().map(|text| quoted(text)).collect();
+    format!("[{}]", quoted.join(", "))
+}
+
+/// A string in quotes, with escapes.
+fn quoted(text: &str) -> String {
+    let mut out = String::with_capacity(text.len() + 2);
+    out.push('"');
+    for c in text.chars() {
+        match c {
+            '"' => out.push_str("\\\""),
+            '\\' => out.push_str("\\\\"),
+            '\n' => out.push_str("\\n"),
+            '\r' => out.push_str("\\r"),
+            '\t' => out.push_str("\\t"),
+            c if c.is_control() => {
+                let _ = write!(out, "\\x{:02x}", u32::from(c));
+            }
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}
+
+fn tuple(values: &[f32]) -> String {
+    let mut out = String::new();
+    push_tuple(values, &mut out);
+    out
+}
+
+fn push_tuple(values: &[f32], out: &mut String) {
+    out.push('(');
+    for (index, value) in values.iter().enumerate() {
+        if index > 0 {
+            out.push_str(", ");
+        }
+        push(*value, out);
+    }
+    out.push(')');
+}
+
+fn float(value: f32) -> String {
+    let mut out = String::new();
+    push(value, &mut out);
+    out
+}
+
+/// Shortest digits that give the same bits. Zero keeps its sign.
+fn push(value: f32, out: &mut String) {
+    let size = value.abs();
+    let _ = match size {
+        0.0 if value.is_sign_negative() => write!(out, "-0.0"),
+        _ if !value.is_finite() => write!(out, "{}", special(f64::from(value))),
+        _ if size != 0.0 && !(1e-4..1e9).contains(&size) => write!(out, "{value:e}"),
+        _ => write!(out, "{value}"),
+    };
+}
+
+fn double(value: f64) -> String {
+    if value.is_finite() {
+        let size = value.abs();
+        if size != 0.0 && !(1e-4..1e15).contains(&size) {
+            return format!("{value:e}");
+        }
+        return format!("{value}");
+    }
+    special(value).to_owned()
+}
+
+/// Pixar's words for what is no number.
+fn special(value: f64) -> &'static str {
+    if value.is_nan() {
+        "nan"
+    } else if value > 0.0 {
+        "inf"
+    } else {
+        "-inf"
+    }
+}
