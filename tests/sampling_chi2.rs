@@ -5,7 +5,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 use vair::bake::{Settings, bake};
-use vair::bsdf::{Bsdf, HairMaterial, Place, TableSet, Zone};
+use vair::bsdf::{AlongStrand, Bsdf, Chiang, ChiangParameters, HairMaterial, Place, TableSet, Zone};
 use vair::fiber::Fiber;
 use vair::math::frame;
 use vair::math::unicube::Unicube;
@@ -106,6 +106,7 @@ fn place(tip_mm: f32) -> Place {
         at: 0.5,
         tip_mm,
         part: 0,
+        across: 0.0,
     }
 }
 
@@ -198,4 +199,26 @@ fn a_density_off_by_two_percent_is_caught() {
     };
     let z = chi_squared(&material.at(place(1.0), wo, 0.0, 0.5), 9, checker);
     assert!(z > LIMIT, "only {z:.1} sigma");
+}
+
+#[test]
+fn the_hair_model_samples_what_its_density_says() {
+    for (beta_m, beta_n, sigma) in [(0.3, 0.3, 0.1), (0.12, 0.6, 1.0), (0.8, 0.15, 0.0)] {
+        let model = Chiang::new(&ChiangParameters {
+            sigma_a: Vec3::new(sigma, 2.0 * sigma, 4.0 * sigma),
+            beta_m,
+            beta_n,
+            ..ChiangParameters::default()
+        });
+        let material = HairMaterial::Chiang(AlongStrand::uniform(model));
+        for (i, (theta, across)) in [(0.1f64, 0.3), (-0.8, -0.9), (1.2, 0.0)]
+            .into_iter()
+            .enumerate()
+        {
+            let wo = frame::direction(theta, 0.0).as_vec3();
+            let at = Place { across, ..place(1.0) };
+            let z = chi_squared(&material.at(at, wo, 0.0, 0.5), i as u64, |_| 1.0);
+            assert!(z < LIMIT, "{beta_m} {theta} {across}: z = {z}");
+        }
+    }
 }

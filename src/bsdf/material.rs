@@ -1,6 +1,6 @@
-//! Which tables apply where along a strand.
+//! Which scattering applies where along a strand.
 
-use super::Bsdf;
+use super::{Bsdf, Chiang};
 use crate::color::Rgb;
 use crate::table::ScatterTable;
 use glam::Vec3;
@@ -12,6 +12,8 @@ pub enum HairMaterial {
     Isotropic(Rgb),
     /// Baked tables at stations along the hair, dyed for zones of pigment.
     Tables(TableSet),
+    /// The model of Chiang et al. 2016 for the same.
+    Chiang(AlongStrand<Chiang>),
 }
 
 /// Where a zone of pigment ends, counted from the tip.
@@ -23,16 +25,19 @@ pub struct Zone {
     pub softness_mm: f32,
 }
 
-/// Tables of one hair class. A coat of several colors has several sets of zones, one for each part of
+/// What differs along the strands of one hair class: tables, or the numbers of a model. A coat of several colors has several sets of zones, one for each part of
 /// its pattern; every hair belongs to one part.
 #[derive(Clone, Debug)]
-pub struct TableSet {
+pub struct AlongStrand<T> {
     stations: Vec<f32>,
     /// Never empty.
     parts: Vec<CoatPart>,
-    /// `tables[dye * stations + station]`.
-    tables: Vec<ScatterTable>,
+    /// `values[dye * stations + station]`.
+    values: Vec<T>,
 }
+
+/// Tables of one hair class.
+pub type TableSet = AlongStrand<ScatterTable>;
 
 /// The pigment of the hairs in one part of a coat's pattern.
 #[derive(Clone, Debug)]
@@ -43,28 +48,28 @@ pub struct CoatPart {
     pub dyes: Vec<usize>,
 }
 
-impl TableSet {
+impl<T> AlongStrand<T> {
     /// A set whose hairs are all alike.
     ///
     /// * `stations`: positions along the hair, 0 root .. 1 tip, ascending.
     /// * `zones`: from the tip, ascending; the last one is open-ended.
-    /// * `tables`: one a zone and station, stations running fastest. `None` if the counts disagree.
-    pub fn new(stations: Vec<f32>, zones: Vec<Zone>, tables: Vec<ScatterTable>) -> Option<Self> {
+    /// * `values`: one a zone and station, stations running fastest. `None` if the counts disagree.
+    pub fn new(stations: Vec<f32>, zones: Vec<Zone>, values: Vec<T>) -> Option<Self> {
         let dyes = (0..zones.len()).collect();
-        Self::with_parts(stations, vec![CoatPart { zones, dyes }], tables)
+        Self::with_parts(stations, vec![CoatPart { zones, dyes }], values)
     }
 
     /// A set whose hairs belong to the parts of a pattern.
     ///
     /// * `parts`: the pigment of each part; zones of equal pigment share a dye.
-    /// * `tables`: one a dye and station, stations running fastest. `None` if the counts disagree.
+    /// * `values`: one a dye and station, stations running fastest. `None` if the counts disagree.
     pub fn with_parts(
         stations: Vec<f32>,
         parts: Vec<CoatPart>,
-        tables: Vec<ScatterTable>,
+        values: Vec<T>,
     ) -> Option<Self> {
         let whole = |part: &CoatPart| {
-            let dyed = |&dye: &usize| (dye + 1) * stations.len() <= tables.len();
+            let dyed = |&dye: &usize| (dye + 1) * stations.len() <= values.len();
             !part.zones.is_empty()
                 && part.zones.len() == part.dyes.len()
                 && part.dyes.iter().all(dyed)
@@ -73,14 +78,38 @@ impl TableSet {
         complete.then_some(Self {
             stations,
             parts,
-            tables,
+            values,
         })
     }
 
-    /// The table at a point, and a random number that is left: between stations and across soft edges
+    /// The same value everywhere.
+    pub fn uniform(value: T) -> Self {
+        Self {
+            stations: vec![0.0],
+            parts: vec![CoatPart {
+                zones: vec![Zone {
+                    to_mm: f32::INFINITY,
+                    softness_mm: 0.0,
+                }],
+                dyes: vec![0],
+            }],
+            values: vec![value],
+        }
+    }
+
+    /// Something else at the same places, made of what is there.
+    pub fn try_map<U, E>(&self, f: impl FnMut(&T) -> Result<U, E>) -> Result<AlongStrand<U>, E> {
+        Ok(AlongStrand {
+            stations: self.stations.clone(),
+            parts: self.parts.clone(),
+            values: self.values.iter().map(f).collect::<Result<_, E>>()?,
+        })
+    }
+
+    /// The value at a point, and a random number that is left: between stations and across soft edges
     /// of zones one of two is drawn with the share as its probability. On average that is the blend, at
     /// a fraction of its cost.
-    fn choose(&self, place: Place, u: f32) -> (&ScatterTable, f32) {
+    fn choose(&self, place: Place, u: f32) -> (&T, f32) {
         let part = &self.parts[place.part.min(self.parts.len() - 1)];
         let (s0, s1, share) = bracket_station(&self.stations, place.at);
         let (second, u) = if u < share {
@@ -96,7 +125,7 @@ impl TableSet {
             (z0, rescale(u, share))
         };
         let dye = part.dyes[zone];
-        (&self.tables[dye * self.stations.len() + station], u)
+        (&self.values[dye * self.stations.len() + station], u)
     }
 }
 
@@ -140,6 +169,9 @@ pub struct Place {
     pub tip_mm: f32,
     /// Part of the coat's pattern that the hair belongs to; the last one if there are fewer.
     pub part: usize,
+    /// Where the line of sight meets the hair across its width, -1..1 in radii, positive toward +Y of the
+    /// strand frame. Of effect for near-field models ([`HairMaterial::is_near_field`]).
+    pub across: f32,
 }
 
 impl HairMaterial {
@@ -148,7 +180,7 @@ impl HairMaterial {
     /// * `wo`: unit direction to the viewer in the strand frame.
     /// * `azimuth`: of `wo` around the strand from the major axis of its section, radians. Of effect
     ///   where tables tell azimuths apart.
-    /// * `u`: a random number in `[0, 1)` that chooses where tables blend.
+    /// * `u`: a random number in `[0, 1)` that chooses where values blend.
     pub fn at(&self, place: Place, wo: Vec3, azimuth: f32, u: f32) -> Bsdf<'_> {
         match self {
             Self::Isotropic(albedo) => Bsdf::Isotropic(*albedo),
@@ -156,16 +188,25 @@ impl HairMaterial {
                 let (table, u) = set.choose(place, u);
                 Bsdf::Table(table.lobe_at(wo, azimuth, u))
             }
+            Self::Chiang(models) => {
+                let (model, _) = models.choose(place, u);
+                Bsdf::Chiang(model.lobe_at(wo, place.across))
+            }
         }
+    }
+
+    /// Whether it matters where across its width a strand is met.
+    pub fn is_near_field(&self) -> bool {
+        matches!(self, Self::Chiang(_))
     }
 
     /// Whether any table tells azimuths apart.
     pub fn has_azimuths(&self) -> bool {
         match self {
-            Self::Isotropic(_) => false,
+            Self::Isotropic(_) | Self::Chiang(_) => false,
             Self::Tables(set) => {
                 let has = |table: &ScatterTable| !table.nodes().azimuths.is_averaged();
-                set.tables.iter().any(has)
+                set.values.iter().any(has)
             }
         }
     }

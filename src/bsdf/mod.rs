@@ -1,13 +1,15 @@
-//! How a strand scatters light: baked tables behind one closed enum.
+//! How a strand scatters light: baked tables and a model in closed form behind one closed enum.
 //!
 //! Everything is in the strand frame of [`crate::math::frame::strand_frame`]: +Z is the tangent,
 //! `wo` (toward the camera) lies in the half plane y = 0, x >= 0. `density` is the scattering
 //! function times the cosine of the light's inclination, `S(wi, wo) cos(theta_i)`, per steradian:
 //! what multiplies incoming radiance in the path integral. No other cosine appears.
 
+mod chiang;
 mod material;
 
-pub use material::{CoatPart, HairMaterial, Place, TableSet, Zone};
+pub use chiang::{Chiang, ChiangLobe, ChiangParameters};
+pub use material::{AlongStrand, CoatPart, HairMaterial, Place, TableSet, Zone};
 
 use crate::color::Rgb;
 use crate::table::Lobe;
@@ -33,6 +35,8 @@ pub enum Bsdf<'a> {
     Isotropic(Rgb),
     /// A baked table.
     Table(Lobe<'a>),
+    /// The model of Chiang et al. 2016.
+    Chiang(ChiangLobe<'a>),
 }
 
 impl Bsdf<'_> {
@@ -41,6 +45,7 @@ impl Bsdf<'_> {
         match self {
             Self::Isotropic(albedo) => *albedo / (4.0 * PI),
             Self::Table(lobe) => lobe.density(wi),
+            Self::Chiang(lobe) => lobe.density_and_pdf(wi).0,
         }
     }
 
@@ -49,6 +54,7 @@ impl Bsdf<'_> {
         match self {
             Self::Isotropic(_) => 1.0 / (4.0 * PI),
             Self::Table(lobe) => self.table_pdf(lobe, lobe.density(wi)),
+            Self::Chiang(lobe) => lobe.density_and_pdf(wi).1,
         }
     }
 
@@ -60,6 +66,7 @@ impl Bsdf<'_> {
                 let density = lobe.density(wi);
                 (density, self.table_pdf(lobe, density))
             }
+            Self::Chiang(lobe) => lobe.density_and_pdf(wi),
         }
     }
 
@@ -97,6 +104,7 @@ impl Bsdf<'_> {
                     pdf,
                 })
             }
+            Self::Chiang(lobe) => lobe.sample(u),
         }
     }
 
@@ -106,6 +114,7 @@ impl Bsdf<'_> {
         match self {
             Self::Isotropic(albedo) => *albedo,
             Self::Table(lobe) => lobe.albedo(),
+            Self::Chiang(lobe) => lobe.albedo(),
         }
     }
 }

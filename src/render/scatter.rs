@@ -4,8 +4,8 @@ use crate::bsdf::{Bsdf, Place};
 use crate::color::Rgb;
 use crate::math::frame::strand_frame;
 use crate::sampling::concentric_disk;
-use crate::scene::{Hit, Leaving, Ray, Scene, StrandHit};
-use glam::{Mat3, Vec3};
+use crate::scene::{Hit, Leaving, Ray, Scene, Segment, StrandHit, Strands};
+use glam::{Mat3, Vec3, Vec4Swizzles};
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// A scattering point.
@@ -20,7 +20,7 @@ enum Kind<'a> {
         /// Strand frame to world.
         frame: Mat3,
         hit: StrandHit,
-        strands: &'a crate::scene::Strands,
+        strands: &'a Strands,
     },
     Matte {
         color: Rgb,
@@ -55,6 +55,11 @@ impl<'a> Scatter<'a> {
                 let azimuth = azimuth_of(frame.x_axis, hit.side, hit.tangent);
                 let material = &scene.materials[hit.class as usize];
                 let place = Place {
+                    across: if material.is_near_field() {
+                        offset_across(&scene.strands, hit, ray)
+                    } else {
+                        0.0
+                    },
                     at: hit.at,
                     tip_mm: hit.tip_mm,
                     part: usize::from(hit.coat),
@@ -164,6 +169,22 @@ impl<'a> Scatter<'a> {
             Kind::Matte { frame, .. } => frame.z_axis,
         }
     }
+}
+
+/// Where a ray meets a strand across its width, -1..1 in radii, positive toward `tangent x viewer`.
+fn offset_across(strands: &Strands, hit: &StrandHit, ray: &Ray) -> f32 {
+    let joint = hit.segment as usize;
+    let segment = Segment {
+        root: strands.joints()[joint],
+        tip: strands.joints()[joint + 1],
+    };
+    let Some((_, along)) = segment.intersect(ray.origin, ray.dir) else {
+        return 0.0;
+    };
+    let radius = segment.root.w + along * (segment.tip.w - segment.root.w);
+    let axis = segment.tip.xyz() - segment.root.xyz();
+    let side = axis.cross(-ray.dir).normalize_or_zero();
+    ((ray.origin - segment.root.xyz()).dot(side) / radius.max(f32::MIN_POSITIVE)).clamp(-1.0, 1.0)
 }
 
 /// Azimuth of a direction around a tangent, radians from `side`; 0 where there is no side.

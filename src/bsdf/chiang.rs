@@ -1,0 +1,292 @@
+//! The hair model of Chiang, Bitterli, Tappan and Burley 2016, "A practical and controllable hair and
+//! fur model for production path tracing": what pbrt, Mitsuba and Cycles call (principled) hair.
+//!
+//! Four lobes: R, TT, TRT, and all light of more reflections inside. Each is its energy times a
+//! longitudinal lobe of d'Eon et al. 2011 times a logistic in azimuth, even for the last. It is a
+//! near-field model: it knows where across the strand it was met.
+
+use super::BsdfSample;
+use crate::color::Rgb;
+use crate::math::fresnel;
+use glam::Vec3;
+use std::f32::consts::{FRAC_PI_8, PI, TAU};
+
+/// Lobes: R, TT, TRT, the rest.
+const LOBES: usize = 4;
+
+/// The numbers of the model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChiangParameters {
+    /// Absorption per radius of the strand, linear Rec.709, >= 0.
+    pub sigma_a: Rgb,
+    /// Longitudinal roughness, 0..1.
+    pub beta_m: f32,
+    /// Azimuthal roughness, 0..1.
+    pub beta_n: f32,
+    /// Tilt of the scales, degrees: above 0 it sends R toward the root, TT and TRT toward the tip.
+    pub alpha_deg: f32,
+    /// Refractive index, > 1.
+    pub eta: f32,
+}
+
+impl Default for ChiangParameters {
+    fn default() -> Self {
+        Self {
+            sigma_a: Rgb::new(0.06, 0.10, 0.20),
+            beta_m: 0.3,
+            beta_n: 0.3,
+            alpha_deg: 2.0,
+            eta: 1.55,
+        }
+    }
+}
+
+/// Least roughness that is computed with: below it lobes are too narrow for single precision.
+const LEAST_ROUGHNESS: f32 = 0.02;
+
+/// The model with all that does not depend on directions worked out.
+#[derive(Clone, Copy, Debug)]
+pub struct Chiang {
+    sigma_a: Rgb,
+    eta: f32,
+    lobes: [Longitudinal; LOBES],
+    azimuthal: Logistic,
+}
+
+/// One longitudinal lobe.
+#[derive(Clone, Copy, Debug)]
+struct Longitudinal {
+    variance: f32,
+    /// `1 / (v (1 - exp(-2 / v)))`.
+    norm: f32,
+    /// `exp(-2 / v)`.
+    floor: f32,
+    /// Sine and cosine of the angle by which scales tilt the query.
+    tilt: [f32; 2],
+}
+
+impl Longitudinal {
+    fn new(variance: f32, tilt: f32) -> Self {
+        let floor = (-2.0 / variance).exp();
+        Self {
+            variance,
+            norm: 1.0 / (variance * (1.0 - floor)),
+            floor,
+            tilt: tilt.sin_cos().into(),
+        }
+    }
+
+    /// Sine and cosine of the query's inclination as the scales tilt it.
+    fn tilted(&self, sin: f32, cos: f32) -> [f32; 2] {
+        let [s, c] = self.tilt;
+        [sin * c + cos * s, (cos * c - sin * s).abs()]
+    }
+
+    /// Per unit sine of the light's inclination; integrates to 1. The lobe of d'Eon et al. 2011, written
+    /// so that neither the exponential nor the Bessel function overflows.
+    fn density(&self, [sin_q, cos_q]: [f32; 2], sin_i: f32, cos_i: f32) -> f32 {
+        let along = cos_i * cos_q - sin_i * sin_q - 1.0;
+        let a = cos_i * cos_q / self.variance;
+        self.norm * scaled_bessel(a) * (along / self.variance).exp()
+    }
+
+    /// Sine of an inclination drawn by [`Self::density`].
+    fn sample(&self, [sin_q, cos_q]: [f32; 2], u: f32, v: f32) -> f32 {
+        let cos = 1.0 + self.variance * (u + (1.0 - u) * self.floor).ln();
+        let sin = (1.0 - cos * cos).max(0.0).sqrt();
+        (-cos * sin_q + sin * (TAU * v).cos() * cos_q).clamp(-1.0, 1.0)
+    }
+}
+
+/// `exp(-x) I0(x)` for x >= 0 (Abramowitz and Stegun 9.8.1 and 9.8.2).
+fn scaled_bessel(x: f32) -> f32 {
+    let horner = |coefficients: &[f32], t: f32| coefficients.iter().rfold(0.0, |s, c| s * t + c);
+    if x < 3.75 {
+        const NEAR: [f32; 7] = [
+            1.0,
+            3.515_623,
+            3.089_942_4,
+            1.206_749_2,
+            0.265_973_2,
+            0.036_076_8,
+            0.004_581_3,
+        ];
+        let t = x / 3.75;
+        horner(&NEAR, t * t) * (-x).exp()
+    } else {
+        const FAR: [f32; 9] = [
+            0.398_942_3,
+            0.013_285_92,
+            0.002_253_19,
+            -0.001_575_65,
+            0.009_162_81,
+            -0.020_577_06,
+            0.026_355_37,
+            -0.016_476_33,
+            0.003_923_77,
+        ];
+        horner(&FAR, 3.75 / x) / x.sqrt()
+    }
+}
+
+/// A logistic distribution trimmed to a full turn.
+#[derive(Clone, Copy, Debug)]
+struct Logistic {
+    scale: f32,
+    /// Probability of the untrimmed one below -pi, and between -pi and pi.
+    below: f32,
+    between: f32,
+}
+
+impl Logistic {
+    fn new(scale: f32) -> Self {
+        let below = 1.0 / (1.0 + (PI / scale).exp());
+        Self {
+            scale,
+            below,
+            between: 1.0 - 2.0 * below,
+        }
+    }
+
+    /// Per radian, at an angle of any number of turns.
+    fn density(&self, angle: f32) -> f32 {
+        let off = angle - TAU * (angle / TAU).round();
+        let e = (-off.abs() / self.scale).exp();
+        e / (self.scale * (1.0 + e) * (1.0 + e) * self.between)
+    }
+
+    fn sample(&self, u: f32) -> f32 {
+        let p = (self.below + u * self.between).clamp(f32::MIN_POSITIVE, 1.0 - f32::EPSILON);
+        (-self.scale * (1.0 / p - 1.0).ln()).clamp(-PI, PI)
+    }
+}
+
+impl Chiang {
+    /// Works out what the directions do not change. Roughness below 0.02 is taken as 0.02.
+    pub fn new(p: &ChiangParameters) -> Self {
+        let m = p.beta_m.clamp(LEAST_ROUGHNESS, 1.0);
+        let n = p.beta_n.clamp(LEAST_ROUGHNESS, 1.0);
+        let variance = (0.726 * m + 0.812 * m * m + 3.7 * m.powi(20)).powi(2);
+        let scale = FRAC_PI_8.sqrt() * (0.265 * n + 1.194 * n * n + 5.372 * n.powi(22));
+        let alpha = p.alpha_deg.to_radians();
+        Self {
+            sigma_a: p.sigma_a,
+            eta: p.eta,
+            lobes: [
+                Longitudinal::new(variance, 2.0 * alpha),
+                Longitudinal::new(0.25 * variance, -alpha),
+                Longitudinal::new(4.0 * variance, -4.0 * alpha),
+                Longitudinal::new(4.0 * variance, 0.0),
+            ],
+            azimuthal: Logistic::new(scale),
+        }
+    }
+
+    /// The model as seen from one direction.
+    ///
+    /// * `wo`: unit direction to the viewer in the strand frame, y = 0 and x >= 0.
+    /// * `h`: where across the strand the line of sight meets it, -1..1 in radii, positive toward +Y.
+    pub fn lobe_at(&self, wo: Vec3, h: f32) -> ChiangLobe<'_> {
+        let sin = wo.z.clamp(-1.0, 1.0);
+        let cos = (1.0 - sin * sin).sqrt().max(1e-4);
+        // Positive h sees normals that lean to +Y, about which light turns to positive azimuths.
+        let h = -h.clamp(-0.9999, 0.9999);
+        let bravais = (self.eta * self.eta - sin * sin).sqrt() / cos;
+        let sin_gamma_t = h / bravais;
+        let cos_gamma_t = (1.0 - sin_gamma_t * sin_gamma_t).sqrt();
+        let sin_t = sin / self.eta;
+        let crossing = 2.0 * cos_gamma_t / (1.0 - sin_t * sin_t).sqrt();
+        let (gamma_i, gamma_t) = (h.asin(), sin_gamma_t.asin());
+        let energy = energies(
+            fresnel(cos * (1.0 - h * h).sqrt(), self.eta),
+            (-self.sigma_a * crossing).map(f32::exp),
+        );
+        let total: f32 = energy.iter().map(|e| e.element_sum()).sum();
+        ChiangLobe {
+            model: self,
+            energy,
+            share: energy.map(|e| e.element_sum() / total),
+            tilted: self.lobes.map(|lobe| lobe.tilted(sin, cos)),
+            exit: [0.0, 1.0, 2.0].map(|p| 2.0 * p * gamma_t - 2.0 * gamma_i + p * PI),
+        }
+    }
+}
+
+fn fresnel(cosine: f32, eta: f32) -> f32 {
+    fresnel::dielectric(f64::from(cosine), f64::from(eta)).0 as f32
+}
+
+/// Energies of the lobes for reflectance `f` at the surface and transmittance `t` of a crossing.
+fn energies(f: f32, t: Rgb) -> [Rgb; LOBES] {
+    let tt = (1.0 - f) * (1.0 - f) * t;
+    let trt = tt * t * f;
+    [Rgb::splat(f), tt, trt, trt * t * f / (1.0 - f * t)]
+}
+
+/// The model at one point of a strand toward one direction.
+#[derive(Clone, Copy, Debug)]
+pub struct ChiangLobe<'a> {
+    model: &'a Chiang,
+    energy: [Rgb; LOBES],
+    /// Probabilities of the lobes.
+    share: [f32; LOBES],
+    /// Sine and cosine of the query's inclination for each lobe.
+    tilted: [[f32; 2]; LOBES],
+    /// Azimuths about which R, TT and TRT leave.
+    exit: [f32; 3],
+}
+
+impl ChiangLobe<'_> {
+    /// `S(wi, wo) cos(theta_i)` per steradian and the density of [`Self::sample`].
+    pub fn density_and_pdf(&self, wi: Vec3) -> (Rgb, f32) {
+        let sin = wi.z.clamp(-1.0, 1.0);
+        let cos = (1.0 - sin * sin).sqrt();
+        let azimuth = wi.y.atan2(wi.x);
+        let (mut density, mut pdf) = (Rgb::ZERO, 0.0);
+        for lobe in 0..LOBES {
+            let along = self.model.lobes[lobe].density(self.tilted[lobe], sin, cos);
+            let around = match self.exit.get(lobe) {
+                Some(exit) => self.model.azimuthal.density(azimuth - exit),
+                None => 1.0 / TAU,
+            };
+            density += self.energy[lobe] * (along * around);
+            pdf += self.share[lobe] * along * around;
+        }
+        (density, pdf)
+    }
+
+    /// Draws a direction from three numbers in `[0, 1)`.
+    pub fn sample(&self, [around, along, mut choice]: [f32; 3]) -> Option<BsdfSample> {
+        let mut lobe = 0;
+        while lobe < LOBES - 1 && choice >= self.share[lobe] {
+            choice -= self.share[lobe];
+            lobe += 1;
+        }
+        // What is left of the choice is as good as new.
+        let rest = (choice / self.share[lobe]).clamp(0.0, 1.0);
+        // 1 - u, never 0, for a logarithm.
+        let sin = self.model.lobes[lobe].sample(self.tilted[lobe], 1.0 - along, rest);
+        let cos = (1.0 - sin * sin).sqrt();
+        let azimuth = match self.exit.get(lobe) {
+            Some(exit) => exit + self.model.azimuthal.sample(around),
+            None => TAU * around,
+        };
+        let (s, c) = azimuth.sin_cos();
+        let wi = Vec3::new(cos * c, cos * s, sin);
+        let (density, pdf) = self.density_and_pdf(wi);
+        (pdf > 0.0 && pdf.is_finite()).then(|| BsdfSample {
+            wi,
+            weight: density / pdf,
+            pdf,
+        })
+    }
+
+    /// Share of even light that is sent toward the viewer: all lobes are normalized.
+    pub fn albedo(&self) -> Rgb {
+        self.energy.iter().sum()
+    }
+}
+
+#[cfg(test)]
+#[path = "chiang_tests.rs"]
+mod tests;
