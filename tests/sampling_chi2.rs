@@ -5,7 +5,9 @@
 use glam::Vec3;
 use rayon::prelude::*;
 use vair::bake::{Settings, bake};
-use vair::bsdf::{AlongStrand, Bsdf, Chiang, ChiangParameters, HairMaterial, Place, TableSet, Zone};
+use vair::bsdf::{
+    AlongStrand, Bsdf, Chiang, ChiangParameters, HairMaterial, Place, TableSet, Zone,
+};
 use vair::fiber::Fiber;
 use vair::math::frame;
 use vair::math::unicube::Unicube;
@@ -216,7 +218,10 @@ fn the_hair_model_samples_what_its_density_says() {
             .enumerate()
         {
             let wo = frame::direction(theta, 0.0).as_vec3();
-            let at = Place { across, ..place(1.0) };
+            let at = Place {
+                across,
+                ..place(1.0)
+            };
             let z = chi_squared(&material.at(at, wo, 0.0, 0.5), i as u64, |_| 1.0);
             assert!(z < LIMIT, "{beta_m} {theta} {across}: z = {z}");
         }

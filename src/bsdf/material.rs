@@ -63,11 +63,7 @@ impl<T> AlongStrand<T> {
     ///
     /// * `parts`: the pigment of each part; zones of equal pigment share a dye.
     /// * `values`: one a dye and station, stations running fastest. `None` if the counts disagree.
-    pub fn with_parts(
-        stations: Vec<f32>,
-        parts: Vec<CoatPart>,
-        values: Vec<T>,
-    ) -> Option<Self> {
+    pub fn with_parts(stations: Vec<f32>, parts: Vec<CoatPart>, values: Vec<T>) -> Option<Self> {
         let whole = |part: &CoatPart| {
             let dyed = |&dye: &usize| (dye + 1) * stations.len() <= values.len();
             !part.zones.is_empty()

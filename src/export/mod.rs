@@ -1,9 +1,11 @@
 //! Files for other programs.
 //!
-//! [`usd`] and [`vdb`] are formats and know nothing of fur; [`asset`] makes a component asset of a groom.
+//! [`usd`] and [`vdb`] are formats and know nothing of fur; [`asset`] makes a component asset of a groom;
+//! [`mitsuba`] writes a whole scene.
 
 pub mod asset;
 mod error;
+pub mod mitsuba;
 pub mod usd;
 pub mod vdb;
 

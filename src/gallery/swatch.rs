@@ -48,7 +48,7 @@ pub(super) fn draw(
         spp: studio.quality.swatch,
         seed: 0,
         sampler: Sampler::Qsir,
-        time_limit: None,
+        ..RenderJob::default()
     };
     let film = job.run(&scene, &Silent, cancel)?;
     if !film.report.complete {

@@ -2,11 +2,13 @@
 
 mod draws;
 mod film;
+mod filter;
 mod path;
 mod resample;
 mod scatter;
 
 pub use film::{Crop, Film, NO_STRAND, Pixel, Report};
+pub use filter::{Filter, GAUSSIAN_SIGMA};
 
 use crate::blame::Blame;
 use crate::progress::{Cancel, Progress};
@@ -57,6 +59,8 @@ pub struct RenderJob {
     pub seed: u64,
     /// How directions are drawn.
     pub sampler: Sampler,
+    /// How samples spread over and around their pixel.
+    pub filter: Filter,
     /// Stop after this time with the samples there are; the first pass is always finished.
     pub time_limit: Option<Duration>,
 }
@@ -69,6 +73,7 @@ impl Default for RenderJob {
             spp: 64,
             seed: 0,
             sampler: Sampler::Qsir,
+            filter: Filter::Gaussian,
             time_limit: None,
         }
     }
@@ -183,6 +188,7 @@ impl RenderJob {
             resolution: self.resolution,
             seed: self.seed,
             sampler: self.sampler,
+            filter: self.filter,
             #[cfg(test)]
             bare_target: false,
         }

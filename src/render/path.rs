@@ -1,9 +1,9 @@
 //! The path integrator: one sample of one pixel, a pure function of (scene, seed, pixel, index).
 
-use super::Sampler;
 use super::draws::{Draws, Purpose};
 use super::resample::{Plan, Target, resample};
 use super::scatter::{Direction, Scatter};
+use super::{Filter, Sampler};
 use crate::color::Rgb;
 use crate::scene::{Camera, Ground, Hit, Scene};
 use glam::{Vec2, Vec3};
@@ -15,10 +15,6 @@ const ROULETTE_FROM: u32 = 2;
 /// Scattering events after which a path is cut whatever it carries. Lossless fur escapes long
 /// before: cut paths are counted and reported.
 const FAR_CAP: u32 = 1000;
-
-/// Standard deviation of the Gaussian pixel filter, pixels. 0.3 shows stairs on single hairs, 0.6
-/// blurs them.
-const FILTER_SIGMA: f32 = 0.42;
 
 /// What the camera saw first.
 #[derive(Clone, Copy, Debug, Default)]
@@ -55,6 +51,7 @@ pub(super) struct Integrator<'a> {
     pub(super) resolution: [u32; 2],
     pub(super) seed: u64,
     pub(super) sampler: Sampler,
+    pub(super) filter: Filter,
     /// Replaces the target of resampling, for the test of its bias.
     #[cfg(test)]
     pub(super) bare_target: bool,
@@ -70,11 +67,10 @@ impl Integrator<'_> {
             index,
         );
         let u = draws.point(0, Purpose::Filter);
-        let radius = FILTER_SIGMA * (-2.0 * (1.0 - u[0]).ln()).sqrt();
-        let (sin, cos) = (std::f32::consts::TAU * u[1]).sin_cos();
+        let offset = self.filter.offset([u[0], u[1]]);
         let at = [
-            (x as f32 + 0.5 + radius * cos) / width as f32,
-            (y as f32 + 0.5 + radius * sin) / height as f32,
+            (x as f32 + 0.5 + offset[0]) / width as f32,
+            (y as f32 + 0.5 + offset[1]) / height as f32,
         ];
         let ray = self.camera.ray(at[0], at[1]);
         let mut out = Sample {

@@ -108,6 +108,16 @@ impl Camera {
         })
     }
 
+    /// Right, up and backward: unit columns.
+    pub fn axes(&self) -> Mat3 {
+        self.axes
+    }
+
+    /// Half the width and height of the picture at unit distance.
+    pub fn half_extent(&self) -> [f32; 2] {
+        self.half
+    }
+
     /// Where the camera stands.
     pub fn position(&self) -> Vec3 {
         self.position

@@ -7,7 +7,7 @@
 //! throughput exactly `albedo`. Where azimuths are told apart, one of the two bins that bracket the
 //! query's is drawn by chance: on average that is the blend, at half of its cost.
 
-use super::{Mode, Nodes, ScatterMaps};
+use super::{Mode, Nodes, Provenance, ScatterMaps};
 use crate::color::Rgb;
 use crate::math::frame;
 use crate::math::unicube::Unicube;
@@ -86,6 +86,20 @@ impl ScatterTable {
     /// The nodes of the table.
     pub fn nodes(&self) -> &Nodes {
         &self.nodes
+    }
+
+    /// The flux as plain data, without ledger, errors and provenance, which look-ups do not need.
+    pub fn maps(&self) -> ScatterMaps {
+        ScatterMaps {
+            nodes: self.nodes.clone(),
+            res: self.res(),
+            rgb: self.flux.clone(),
+            error: vec![[0.0; 3]; self.flux.len()],
+            absorption_per_um: [0.0; 3],
+            radius_um: 1.0,
+            ledger: Vec::new(),
+            provenance: Provenance::default(),
+        }
     }
 
     /// Texels along a face edge.
@@ -268,7 +282,7 @@ mod tests {
     use super::*;
     use crate::math::symmetry::Symmetry;
     use crate::sampling::Rng;
-    use crate::table::{Azimuths, Ledger, Provenance};
+    use crate::table::{Azimuths, Ledger};
 
     /// A lopsided table with empty regions and colored lobes.
     fn lumpy(mode: Mode) -> ScatterTable {

@@ -104,6 +104,21 @@ impl Environment {
         }
     }
 
+    /// Texels across and down.
+    pub fn size(&self) -> (usize, usize) {
+        (self.width, self.height)
+    }
+
+    /// Radiance of a texel, before turning; columns from the left, rows from the top.
+    pub fn texel_at(&self, column: usize, row: usize) -> Rgb {
+        self.texels[row * self.width + column]
+    }
+
+    /// The turn about +Y, degrees.
+    pub fn turn_deg(&self) -> f32 {
+        self.turn[1].atan2(self.turn[0]).to_degrees()
+    }
+
     /// Mean radiance over the sphere.
     pub fn mean(&self) -> Rgb {
         self.mean

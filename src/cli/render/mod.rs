@@ -1,17 +1,20 @@
 //! `vair render`: a species to a still. Bakes what the cache does not hold, grows the fur, traces.
 
+mod material;
+mod output;
+mod parse;
+mod stats;
+
 use super::{Console, Failure, bake::parse_count};
-use crate::assembly;
-use crate::bake::{Cache, Settings};
 use crate::blame::Blame;
+use crate::bsdf::ChiangParameters;
+use crate::export::mitsuba::MitsubaScene;
 use crate::groom::{self, GroomSettings};
-use crate::image::{self, Curve, ViewTransform};
 use crate::io::check_writable;
-use crate::render::{Crop, Film, RenderJob, Sampler};
+use crate::render::{Crop, Film, Filter, RenderJob, Sampler};
 use crate::scene::{Backdrop, Environment, Scene, SceneParts, Sun, View, load_environment};
 use crate::skin::{self, Skin};
 use crate::species;
-use crate::table::TableFile;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -23,6 +26,7 @@ use std::time::Duration;
   vair render polar-bear --env sky --res 1280x720 --spp 128 -o bear.png -o bear.exr
   vair render harbor-seal --azimuths 8 -o seal.png
   vair render red-fox --table guard-small.exr --table under-small.exr -o fox.png
+  vair render red-fox --model chiang-fit -o shader.png
   vair render mink --skin sofa.obj --strands 1e6 -o sofa.png
   vair render red-fox --crop 200,150,64,64 --spp 256 -o eye.exr")]
 pub(super) struct Args {
@@ -41,13 +45,13 @@ pub(super) struct Args {
     #[arg(long)]
     env_visible: bool,
     /// Width and height of the picture.
-    #[arg(long, value_parser = parse_size, default_value = "640x480")]
+    #[arg(long, value_parser = parse::size, default_value = "640x480")]
     res: [u32; 2],
     /// Samples a pixel.
     #[arg(long, default_value_t = 32)]
     spp: u32,
     /// Renders only a part of the frame, with the same pixels: x,y,width,height.
-    #[arg(long, value_parser = parse_crop)]
+    #[arg(long, value_parser = parse::crop)]
     crop: Option<Crop>,
     /// Stops after so many seconds with the samples there are.
     #[arg(long, value_name = "SECONDS")]
@@ -55,6 +59,26 @@ pub(super) struct Args {
     /// How directions are drawn; all give the same picture.
     #[arg(long, value_enum, default_value = "qsir")]
     sampler: SamplerArg,
+    /// How samples spread over and around their pixel.
+    #[arg(long, value_enum, default_value = "gaussian")]
+    filter: FilterArg,
+    /// What scatters light: the baked tables, the hair model of Chiang et al. 2016 (Mitsuba, pbrt and
+    /// Cycles have it too) with given numbers, or that model as near to the tables as it comes.
+    #[arg(long, value_enum, default_value = "table")]
+    model: ModelArg,
+    /// Numbers of `--model chiang`; absorption is per radius.
+    #[arg(
+        long,
+        value_parser = parse::chiang,
+        value_name = "KEY=VALUE,..",
+        default_value = "sigma_a=0.06:0.10:0.20,beta_m=0.3,beta_n=0.3,alpha=2,eta=1.55",
+        allow_hyphen_values = true
+    )]
+    chiang: ChiangParameters,
+    /// Also writes strands, skin, light and camera to this folder as a scene for Mitsuba 3; needs
+    /// `--model chiang`.
+    #[arg(long, value_name = "FOLDER")]
+    mitsuba: Option<PathBuf>,
     /// Strands in all; if not given, as many as the animal has, at most 250000.
     #[arg(long, value_parser = parse_count)]
     strands: Option<u64>,
@@ -70,7 +94,7 @@ pub(super) struct Args {
     table: Vec<PathBuf>,
     /// Camera: degrees around the subject (0 is +Z, 90 is +X) and above it; if not given, the side from
     /// which the skin looks best.
-    #[arg(long, value_parser = parse_pair, value_name = "YAW,PITCH", allow_hyphen_values = true)]
+    #[arg(long, value_parser = parse::pair, value_name = "YAW,PITCH", allow_hyphen_values = true)]
     view: Option<[f32; 2]>,
     /// Field of view along the shorter side, degrees.
     #[arg(long)]
@@ -79,7 +103,7 @@ pub(super) struct Args {
     #[arg(long)]
     zoom: Option<f32>,
     /// Shifts the camera across and up, in radii of the subject.
-    #[arg(long, value_parser = parse_pair, value_name = "X,Y", allow_hyphen_values = true)]
+    #[arg(long, value_parser = parse::pair, value_name = "X,Y", allow_hyphen_values = true)]
     shift: Option<[f32; 2]>,
     /// Leaves out the floor.
     #[arg(long)]
@@ -96,6 +120,12 @@ pub(super) struct Args {
     /// Seed of fiber, fur and picture.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Another seed for the noise of the picture alone.
+    #[arg(long, value_name = "SEED")]
+    picture_seed: Option<u64>,
+    /// Writes times, rays and memory to this JSON file.
+    #[arg(long, value_name = "FILE")]
+    stats: Option<PathBuf>,
     /// Threads; all cores if not given. The picture does not depend on it.
     #[arg(long)]
     threads: Option<usize>,
@@ -124,34 +154,24 @@ enum SamplerArg {
     Mis,
 }
 
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let parts = text.split_once(['x', 'X']);
-    let sides = parts.and_then(|(w, h)| Some([w.trim().parse().ok()?, h.trim().parse().ok()?]));
-    sides.ok_or_else(|| format!("`{text}` is not a size such as 960x720"))
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum FilterArg {
+    /// A narrow Gaussian.
+    Gaussian,
+    /// Even over the pixel.
+    Box,
+    /// A tent of two pixels.
+    Tent,
 }
 
-fn parse_crop(text: &str) -> Result<Crop, String> {
-    let numbers: Result<Vec<u32>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok(&[x, y, width, height]) => Ok(Crop {
-            x,
-            y,
-            width,
-            height,
-        }),
-        _ => Err(format!(
-            "`{text}` is not a crop such as 200,150,64,64 (x,y,width,height)"
-        )),
-    }
-}
-
-fn parse_pair(text: &str) -> Result<[f32; 2], String> {
-    let pair = text.split_once(',');
-    let pair = pair.and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
-    match pair {
-        Some(pair @ [a, b]) if f32::is_finite(a) && f32::is_finite(b) => Ok(pair),
-        _ => Err(format!("`{text}` is not a pair of numbers such as 35,12")),
-    }
+#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
+enum ModelArg {
+    /// Photons baked into tables.
+    Table,
+    /// The model with the numbers of `--chiang`.
+    Chiang,
+    /// The model fitted to the tables.
+    ChiangFit,
 }
 
 /// Runs the command.
@@ -159,35 +179,27 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     super::with_threads(args.threads, || run_here(args, console))?
 }
 
-/// A table whose maps the renderer can look up.
-fn given_table(path: &Path) -> Result<TableFile, Failure> {
-    let table = TableFile::read(path)?;
-    let res = match &table {
-        TableFile::Structure(table) => table.res,
-        TableFile::Scatter(maps) => maps.res,
-    };
-    if !res.is_power_of_two() {
-        let message = format!("{} has {res} texels a face edge", path.display());
-        return Err(Failure::with_help(
-            Blame::Input,
-            message,
-            "bake it again with --face 64 or another power of two",
-        ));
-    }
-    Ok(table)
-}
-
 fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     // All that can be refused is refused before any work.
     let species = species::load(&args.name, &args.set)?;
     let job = job(args)?;
     job.check()?;
+    if args.mitsuba.is_some() && args.model != ModelArg::Chiang {
+        return Err(Failure::with_help(
+            Blame::Input,
+            "--mitsuba writes the numbers of a hair model, and the picture is of baked tables",
+            "add --model chiang, with --chiang for other numbers than the usual",
+        ));
+    }
     for output in &args.output {
-        format_of(output)?;
+        output::format_of(output)?;
         check_writable(output)?;
     }
-    let given = args.table.iter().map(|path| given_table(path));
-    let given = given.collect::<Result<Vec<TableFile>, Failure>>()?;
+    if let Some(path) = &args.stats {
+        check_writable(path)?;
+    }
+    let given = args.table.iter().map(|path| material::given_table(path));
+    let given = given.collect::<Result<Vec<_>, Failure>>()?;
     let skin = skin::load(&args.skin)?;
     let view = view(args, &skin)?;
     let environment = environment(args, &view)?;
@@ -196,24 +208,15 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     }
 
     let cancel = console.cancel();
-    let cache = if args.no_cache {
-        None
-    } else {
-        Cache::of_user()
-    };
-    let bake = Settings {
-        photons: args.bake_photons,
-        azimuths: args.azimuths,
-        seed: args.seed,
-        ..Settings::cone()
-    };
-    let cache = cache.as_ref();
-    let materials = assembly::materials_with(&species, &given, &bake, cache, console, cancel)?;
+    let mut stages = stats::Stages::begin();
+    let materials = material::materials(args, &species, &given, console)?;
+    stages.end("materials");
     let settings = GroomSettings {
         strands: args.strands.map(|n| n as usize),
         seed: args.seed,
     };
     let groom = groom::grow(&skin, &species, &settings, console, cancel)?;
+    stages.end("groom");
     console.say(format!("{} strands on {}", groom.strands(), args.skin));
     let color = Vec3::from_array(species.skin_color.map(|c| c as f32));
     let scene = Scene::build(SceneParts {
@@ -229,7 +232,23 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         ground: (!args.no_ground && !args.env_visible).then_some(0.5),
         view,
     })?;
+    stages.end("scene");
+    if let Some(folder) = &args.mitsuba {
+        let [width, height] = job.resolution;
+        MitsubaScene {
+            groom: &groom,
+            hair: &args.chiang,
+            skin: Some((&skin, color)),
+            environment: &scene.environment,
+            camera: &scene.camera(width as f32 / height as f32),
+            job: &job,
+        }
+        .write(folder)?;
+        stages.end("export");
+        console.say(format!("Mitsuba scene in {}", folder.display()));
+    }
     let film = job.run(&scene, console, cancel)?;
+    stages.end("render");
     report(&film, console);
     if film.report.passes == 0 {
         return Err(Failure::new(
@@ -237,11 +256,15 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
             "stopped before every pixel had a sample; nothing was written",
         ));
     }
-    write(args, &species, &film)?;
+    output::write(args, &species, &film)?;
+    stages.end("write");
+    if let Some(path) = &args.stats {
+        stages.write(path, &scene, &film)?;
+    }
     if cancel.is_cancelled() {
         let message = format!(
             "stopped; {} holds the samples done so far",
-            list(&args.output)
+            output::list(&args.output)
         );
         return Err(Failure::new(Blame::Interrupted, message));
     }
@@ -260,7 +283,7 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
         resolution: args.res,
         crop: args.crop,
         spp: args.spp,
-        seed: args.seed,
+        seed: args.picture_seed.unwrap_or(args.seed),
         sampler: match args.sampler {
             SamplerArg::Qsir => Sampler::Qsir,
             SamplerArg::QsirOneRay => Sampler::QsirOneRay,
@@ -268,12 +291,17 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
             SamplerArg::Env => Sampler::Env,
             SamplerArg::Mis => Sampler::Mis,
         },
+        filter: match args.filter {
+            FilterArg::Gaussian => Filter::Gaussian,
+            FilterArg::Box => Filter::Box,
+            FilterArg::Tent => Filter::Tent,
+        },
         time_limit,
     })
 }
 
 fn environment(args: &Args, view: &View) -> Result<Environment, Failure> {
-    check_range("--env-turn", args.env_turn, -3600.0, 3600.0)?;
+    parse::check_range("--env-turn", args.env_turn, -3600.0, 3600.0)?;
     Ok(match args.env.as_str() {
         // Studio lights stand around the camera; sun and pictures stay where they are.
         "studio" => Environment::studio().turned(view.yaw_deg + args.env_turn),
@@ -287,94 +315,15 @@ fn environment(args: &Args, view: &View) -> Result<Environment, Failure> {
 fn view(args: &Args, skin: &Skin) -> Result<View, Failure> {
     let base = View::from_direction(skin.view);
     let [yaw_deg, pitch_deg] = args.view.unwrap_or([base.yaw_deg, base.pitch_deg]);
-    check_range("--view pitch", pitch_deg, -89.0, 89.0)?;
+    parse::check_range("--view pitch", pitch_deg, -89.0, 89.0)?;
     Ok(View {
         yaw_deg,
         pitch_deg,
-        fov_deg: check_range("--fov", args.fov.unwrap_or(base.fov_deg), 1.0, 150.0)?,
-        zoom: check_range("--zoom", args.zoom.unwrap_or(base.zoom), 0.01, 1000.0)?,
+        fov_deg: parse::check_range("--fov", args.fov.unwrap_or(base.fov_deg), 1.0, 150.0)?,
+        zoom: parse::check_range("--zoom", args.zoom.unwrap_or(base.zoom), 0.01, 1000.0)?,
         shift: args.shift.unwrap_or(base.shift),
         ..base
     })
-}
-
-fn check_range(name: &str, value: f32, lo: f32, hi: f32) -> Result<f32, Failure> {
-    if (lo..=hi).contains(&value) {
-        return Ok(value);
-    }
-    Err(Failure::new(
-        Blame::Input,
-        format!("{name} is {value}, must be {lo} to {hi}"),
-    ))
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Format {
-    Png,
-    Exr,
-}
-
-fn format_of(path: &Path) -> Result<Format, Failure> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-    match extension.to_ascii_lowercase().as_str() {
-        "png" => Ok(Format::Png),
-        "exr" => Ok(Format::Exr),
-        _ => Err(Failure::with_help(
-            Blame::Input,
-            format!(
-                "{} is no kind of picture that can be written",
-                path.display()
-            ),
-            "end the name in .png or .exr",
-        )),
-    }
-}
-
-fn write(args: &Args, species: &species::Species, film: &Film) -> Result<(), Failure> {
-    let settings = format!(
-        "skin {} env {} env-turn {} res {}x{} spp {} sampler {:?} strands {:?} bake-photons {}",
-        args.skin,
-        args.env,
-        args.env_turn,
-        args.res[0],
-        args.res[1],
-        args.spp,
-        args.sampler,
-        args.strands,
-        args.bake_photons
-    ) + &match args.azimuths {
-        1 => String::new(),
-        n => format!(" azimuths {n}"),
-    };
-    let seed = args.seed.to_string();
-    let provenance = [
-        ("program", concat!("vair ", env!("CARGO_PKG_VERSION"))),
-        ("species", species.id.as_str()),
-        ("species_text", species.text.as_str()),
-        ("settings", settings.as_str()),
-        ("seed", seed.as_str()),
-    ];
-    let curve = if args.plain {
-        Curve::Clip
-    } else {
-        Curve::Shoulder
-    };
-    let view = ViewTransform {
-        exposure_ev: args.exposure,
-        curve,
-    };
-    for output in &args.output {
-        match format_of(output)? {
-            Format::Png if args.no_denoise => {
-                image::write_film_png(output, film, &view, &provenance)?;
-            }
-            Format::Png => {
-                image::write_film_png(output, &image::denoise(film), &view, &provenance)?;
-            }
-            Format::Exr => image::write_film_exr(output, film, &provenance)?,
-        }
-    }
-    Ok(())
 }
 
 fn report(film: &Film, console: &Console) {
@@ -393,12 +342,4 @@ fn report(film: &Film, console: &Console) {
             report.dropped, report.capped
         ));
     }
-}
-
-fn list(paths: &[PathBuf]) -> String {
-    paths
-        .iter()
-        .map(|path| path.display().to_string())
-        .collect::<Vec<_>>()
-        .join(", ")
 }
