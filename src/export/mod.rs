@@ -1,13 +1,14 @@
 //! Files for other programs.
 //!
-//! [`usd`] and [`vdb`] are formats and know nothing of fur; [`asset`] makes a component asset of a groom;
-//! [`mitsuba`] writes a whole scene.
+//! [`usd`] and [`vdb`] are formats and know nothing of fur; [`asset`] makes a component asset of a groom,
+//! [`volume`] grids; [`mitsuba`] writes a whole scene.
 
 pub mod asset;
 mod error;
 pub mod mitsuba;
 pub mod usd;
 pub mod vdb;
+pub mod volume;
 
 pub use error::ExportError;
 

@@ -182,6 +182,13 @@ impl<T: Value> Tree<T> {
         &self.leaves
     }
 
+    /// Leaves out leaves without active voxels that hold nothing but the background.
+    pub fn drop_empty(&mut self) {
+        let background = self.background;
+        self.leaves
+            .retain(|leaf| leaf.active != [0; 8] || leaf.values.iter().any(|v| *v != background));
+    }
+
     /// Number of active voxels, tiles included.
     pub fn active_count(&self) -> u64 {
         let leaves: u64 = self.leaves.iter().map(Leaf::active_count).sum();

@@ -1,0 +1,104 @@
+//! Why no volume was made.
+
+use crate::blame::Blame;
+use crate::export::vdb::VdbError;
+use glam::Vec3;
+
+/// A volume that cannot be made, with the numbers at fault.
+#[derive(Debug, thiserror::Error)]
+pub enum VolumeError {
+    /// More memory than allowed.
+    #[error(
+        "voxels of {voxel_mm:.4} mm need {needed_mb:.0} MB of memory for {leaves} leaves of 8 x 8 x 8, \
+         more than the limit of {limit_mb:.0} MB: choose larger voxels or a higher limit"
+    )]
+    Memory {
+        /// Edge of a voxel, millimeters.
+        voxel_mm: f64,
+        /// Leaves of each grid.
+        leaves: usize,
+        /// Megabytes needed.
+        needed_mb: f64,
+        /// Megabytes allowed.
+        limit_mb: f64,
+    },
+    /// A voxel size out of range.
+    #[error("a voxel of {voxel_mm} mm: must be 0.02 to 1000")]
+    Voxel {
+        /// Edge of a voxel, millimeters.
+        voxel_mm: f64,
+    },
+    /// Strands or a mesh too far from the origin for voxels of this size.
+    #[error(
+        "the place {at} (meters) is not finite or too far from the origin for voxels of {voxel} m"
+    )]
+    TooFar {
+        /// The place.
+        at: Vec3,
+        /// Edge of a voxel, meters.
+        voxel: f64,
+    },
+    /// Control points so far apart that their voxels cannot be counted.
+    #[error(
+        "the control points of a strand at {at} (meters) are {length} m apart, more than {limit} m: \
+         choose larger voxels, or look at that strand"
+    )]
+    LongSpan {
+        /// The first of two control points.
+        at: Vec3,
+        /// Meters.
+        length: f64,
+        /// Largest distance possible for this voxel, meters.
+        limit: f64,
+    },
+    /// A signed distance needs an inside.
+    #[error(
+        "the skin `{skin}` is open: {open} of its edges have no face on the other side, so it has no \
+         inside; ask for grids without `surface`, close the mesh, or thicken it with --shell-mm"
+    )]
+    Open {
+        /// Name of the skin.
+        skin: String,
+        /// Edges that are not balanced.
+        open: usize,
+    },
+    /// More voxels across than one signed distance takes.
+    #[error(
+        "the skin is {across} voxels across: at most {limit} are possible, choose larger voxels"
+    )]
+    TooFine {
+        /// Voxels along the longest axis.
+        across: i64,
+        /// Largest number possible.
+        limit: i64,
+    },
+    /// Nothing to fill voxels with.
+    #[error("there are no strands to fill voxels with")]
+    Empty,
+    /// The grids could not be written.
+    #[error(transparent)]
+    Vdb(#[from] VdbError),
+    /// Stopped by the caller.
+    #[error("stopped before the volume was complete; nothing was written")]
+    Cancelled,
+}
+
+/// The caller has asked to stop.
+pub(super) struct Stopped;
+
+impl From<Stopped> for VolumeError {
+    fn from(_: Stopped) -> Self {
+        Self::Cancelled
+    }
+}
+
+impl VolumeError {
+    /// Who has to act.
+    pub fn blame(&self) -> Blame {
+        match self {
+            Self::Cancelled => Blame::Interrupted,
+            Self::Vdb(VdbError::Io(_)) => Blame::Environment,
+            _ => Blame::Input,
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! A coat as grids: how much fur, of which color and direction, is where; and the skin under it.
+//!
+//! Lengths are meters and the frame is that of the groom, so that grids lie over exported strands.
+//! Voxel `i` is centered at `i` times its edge. What strands leave in a voxel is exact up to how they
+//! are cut into straight pieces: every piece is shared out among the voxels it passes through.
+
+mod curve;
+mod distance;
+mod error;
+mod field;
+mod level_set;
+mod moments;
+mod resolution;
+mod spread;
+#[cfg(test)]
+mod tests;
+mod walk;
+mod winding;
+
+pub use curve::Curves;
+pub use error::VolumeError;
+pub use field::Field;
+pub use level_set::{Mesh, signed_distance};
+pub use resolution::{Statistics, statistics};
+
+use crate::export::vdb::{Compression, Grid, Leaf, Meta, Tree, Value, Writer};
+use crate::progress::{Cancel, Progress};
+use error::Stopped;
+use field::{scalar_leaf, vector_leaf};
+use glam::Vec3;
+use moments::{Listing, Moments};
+use spread::spread;
+use std::io::{Seek, Write};
+
+/// What is wanted of a volume.
+#[derive(Clone, Debug)]
+pub struct VolumeSettings {
+    /// Which grids.
+    pub fields: Vec<Field>,
+    /// Edge of a voxel, meters; `None` for what suits the coat and the memory.
+    pub voxel: Option<f64>,
+    /// Whether values are stored in half precision.
+    pub half: bool,
+    /// How values are stored.
+    pub compression: Compression,
+    /// Most memory for the grids of strands, bytes.
+    pub memory: u64,
+    /// Thickness of the skin for [`Field::Surface`], meters; 0 for the solid inside it.
+    pub shell: f64,
+    /// Entries of metadata that every grid gets: where it comes from.
+    pub provenance: Vec<(String, Meta)>,
+}
+
+impl Default for VolumeSettings {
+    fn default() -> Self {
+        Self {
+            fields: vec![Field::Density, Field::Color, Field::Tangent],
+            voxel: None,
+            half: false,
+            compression: Compression::Zip,
+            memory: 2 << 30,
+            shell: 0.0,
+            provenance: Vec::new(),
+        }
+    }
+}
+
+/// What is going to be made.
+#[derive(Debug)]
+pub struct Plan {
+    /// Edge of a voxel, meters.
+    pub voxel: f64,
+    /// Leaves of 8 x 8 x 8 voxels that strands pass through.
+    pub leaves: usize,
+    /// Memory for the grids of strands, bytes.
+    pub memory: u64,
+    /// What is known of the coat; of interest where the voxel was chosen.
+    pub statistics: Statistics,
+    listing: Listing,
+}
+
+/// A grid that was written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Written {
+    /// Which one.
+    pub field: Field,
+    /// Active voxels.
+    pub active: u64,
+    /// Active leaves.
+    pub leaves: usize,
+    /// Sum of the values times the volume of a voxel, the first component of vectors: for the density,
+    /// the area of all strands.
+    pub integral: f64,
+}
+
+/// Chooses the voxels and finds those that strands pass through.
+///
+/// # Errors
+/// A voxel out of range, strands too far away, more memory than allowed for a voxel that was asked for.
+pub fn plan(
+    curves: &Curves<'_>,
+    settings: &VolumeSettings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Plan, VolumeError> {
+    let statistics = statistics(curves, cancel)?;
+    let mut voxel = settings.voxel.unwrap_or_else(|| statistics.voxel());
+    let [least, most] = resolution::RANGE;
+    if !(least..=most).contains(&voxel) {
+        return Err(VolumeError::Voxel {
+            voxel_mm: voxel * 1e3,
+        });
+    }
+    let per_leaf: u64 = settings.fields.iter().map(|f| f.leaf_bytes()).sum();
+    loop {
+        let listing = Listing::new(curves, voxel, progress, cancel)?;
+        let leaves = listing.leaves();
+        let memory = leaves as u64 * per_leaf;
+        if memory <= settings.memory {
+            return Ok(Plan {
+                voxel,
+                leaves,
+                memory,
+                statistics,
+                listing,
+            });
+        }
+        if settings.voxel.is_some() || voxel * 1.25 > most {
+            return Err(VolumeError::Memory {
+                voxel_mm: voxel * 1e3,
+                leaves,
+                needed_mb: memory as f64 / 1e6,
+                limit_mb: settings.memory as f64 / 1e6,
+            });
+        }
+        voxel *= 1.25;
+    }
+}
+
+/// Fills the grids and writes them as an OpenVDB file.
+///
+/// * `skin`: the mesh for [`Field::Surface`].
+///
+/// # Errors
+/// An open skin where its distance is asked for, an output that fails, `cancel`.
+pub fn write<W: Write + Seek>(
+    out: W,
+    curves: &Curves<'_>,
+    skin: &Mesh<'_>,
+    plan: &Plan,
+    settings: &VolumeSettings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<(W, Vec<Written>), VolumeError> {
+    let creator = concat!("vair ", env!("CARGO_PKG_VERSION"));
+    let mut writer = Writer::new(out, settings.compression, creator)?;
+    let mut written = Vec::new();
+    let of = |voxels: &[Moments], origin| {
+        let fields = settings.fields.iter().filter(|f| **f != Field::Surface);
+        fields
+            .map(|&field| match field.is_vector() {
+                true => Leaves::Vector(vector_leaf(field, origin, voxels)),
+                false => Leaves::Scalar(scalar_leaf(field, origin, voxels, plan.voxel)),
+            })
+            .collect::<Vec<_>>()
+    };
+    let make = |origin, voxels: &[Moments]| of(voxels, origin).into_iter();
+    let mut made = plan.listing.map(curves, progress, cancel, make)?;
+    for &field in settings.fields.iter().filter(|f| **f != Field::Surface) {
+        let (mut scalars, mut vectors) = (Vec::new(), Vec::new());
+        for leaf in made.iter_mut().filter_map(Iterator::next) {
+            match leaf {
+                Leaves::Scalar(leaf) => scalars.push(leaf),
+                Leaves::Vector(leaf) => vectors.push(leaf),
+            }
+        }
+        if matches!(field, Field::Color | Field::Cd) {
+            vectors = spread(&vectors);
+        }
+        written.push(if field.is_vector() {
+            put(
+                &mut writer,
+                field,
+                Tree::new(Vec3::ZERO, vectors, Vec::new())?,
+                plan,
+                settings,
+            )?
+        } else {
+            put(
+                &mut writer,
+                field,
+                Tree::new(0.0, scalars, Vec::new())?,
+                plan,
+                settings,
+            )?
+        });
+    }
+    if settings.fields.contains(&Field::Surface) {
+        let tree = signed_distance(skin, plan.voxel, settings.shell, progress, cancel)?;
+        written.push(put(&mut writer, Field::Surface, tree, plan, settings)?);
+    }
+    Ok((writer.finish()?, written))
+}
+
+/// A leaf of either type.
+enum Leaves {
+    Scalar(Leaf<f32>),
+    Vector(Leaf<Vec3>),
+}
+
+fn put<T: Value, W: Write + Seek>(
+    writer: &mut Writer<W>,
+    field: Field,
+    mut tree: Tree<T>,
+    plan: &Plan,
+    settings: &VolumeSettings,
+) -> Result<Written, VolumeError> {
+    tree.drop_empty();
+    let mut metadata = field.metadata();
+    metadata.extend(settings.provenance.iter().cloned());
+    let mut sum = 0.0;
+    for leaf in tree.leaves() {
+        let active = (0..512).filter(|&i| leaf.is_active(i));
+        sum += active
+            .map(|i| f64::from(leaf.values[i].components()[0]))
+            .sum::<f64>();
+    }
+    let summary = Written {
+        field,
+        active: tree.active_count(),
+        leaves: tree.leaves().len(),
+        integral: sum * plan.voxel.powi(3),
+    };
+    writer.grid(&Grid {
+        name: field.name().to_owned(),
+        class: field.class(),
+        voxel: plan.voxel,
+        half: settings.half,
+        metadata,
+        tree,
+    })?;
+    Ok(summary)
+}

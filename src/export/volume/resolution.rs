@@ -1,0 +1,79 @@
+//! Which voxels suit a coat.
+
+use super::VolumeError;
+use super::curve::Curves;
+use super::moments::Listing;
+use crate::progress::{Cancel, Silent};
+
+/// Strands that should pass through a voxel: with fewer, density is mostly chance; with many more,
+/// tufts and the edge of the coat blur.
+const CROSSINGS: f64 = 8.0;
+/// Voxels along a strand of mean length at least.
+const ALONG: f64 = 6.0;
+/// Range of voxels, meters. OpenVDB takes smaller ones as singular.
+pub(super) const RANGE: [f64; 2] = [2e-5, 1.0];
+
+/// What is known of a coat before its voxels are filled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Statistics {
+    /// Number of strands.
+    pub strands: usize,
+    /// Mean length along control points, meters.
+    pub mean_length: f64,
+    /// Mean diameter by length, meters.
+    pub mean_width: f64,
+    /// Length of strands per volume of coat, meters per cubic meter; the mean distance of neighbors is
+    /// one over its root.
+    pub length_density: f64,
+}
+
+/// Measures a coat.
+///
+/// # Errors
+/// No strands, strands too far from the origin.
+pub fn statistics(curves: &Curves<'_>, cancel: &Cancel) -> Result<Statistics, VolumeError> {
+    let (mut length, mut area) = (0.0, 0.0);
+    for curve in 0..curves.len() {
+        for i in curves.spans(curve) {
+            let way = f64::from(curves.points[i].distance(curves.points[i + 1]));
+            length += way;
+            area += way * 0.5 * f64::from(curves.widths[i] + curves.widths[i + 1]);
+        }
+    }
+    // Also not a number.
+    if !(length > 0.0 && length.is_finite()) {
+        return Err(VolumeError::Empty);
+    }
+    let mean_length = length / curves.len() as f64;
+    // The space that strands take: voxels in which one is, of a size that neighbors do not leave empty
+    // unless the coat is so thin that single hairs are what there is.
+    let probe = (mean_length / ALONG).clamp(RANGE[0], RANGE[1]);
+    let taken = Listing::new(curves, probe, &Silent, cancel)?;
+    let voxels: usize = taken
+        .map(curves, &Silent, cancel, |_, moments| {
+            moments.iter().filter(|m| m.length > 0.0).count()
+        })?
+        .iter()
+        .sum();
+    Ok(Statistics {
+        strands: curves.len(),
+        mean_length,
+        mean_width: area / length,
+        length_density: length / (voxels as f64 * probe.powi(3)),
+    })
+}
+
+impl Statistics {
+    /// Edge of the voxel that eight strands pass through on average, at most a sixth of a strand's
+    /// length and at least two diameters, rounded to two digits; meters.
+    pub fn voxel(&self) -> f64 {
+        // A line through a cube is two thirds of its edge long on average.
+        let wanted = (CROSSINGS / (1.5 * self.length_density)).sqrt();
+        let voxel = wanted
+            .min(self.mean_length / ALONG)
+            .max(2.0 * self.mean_width);
+        let voxel = voxel.clamp(RANGE[0], RANGE[1]);
+        let digit = 10f64.powf(voxel.log10().floor() - 1.0);
+        ((voxel / digit).round() * digit).max(RANGE[0])
+    }
+}
