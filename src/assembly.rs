@@ -1,5 +1,9 @@
 //! From a species to what a scene needs: the one library module that knows bake and renderer.
 
+mod looks;
+
+pub use looks::looks;
+
 use crate::bake::{BakeError, Baked, Cache, Settings, find_or_bake};
 use crate::blame::Blame;
 use crate::bsdf::{Chiang, ChiangParameters, CoatPart, HairMaterial, TableSet, Zone};

@@ -9,6 +9,8 @@
 
 use std::fs;
 use std::path::PathBuf;
+use vair::assembly::looks;
+use vair::bake::Settings;
 use vair::export::asset::{
     AssetSettings, Curves, Frame, Parts, Profile, Reader, Units, Up, levels, write,
 };
@@ -100,11 +102,22 @@ fn export(name: &str, species: &str, skin: &str, count: usize, settings: &AssetS
     let groom = grown(&skin, &species, STRANDS);
     let levels = levels(&groom, &skin, &species, count).unwrap();
     assert_eq!(levels.len(), count);
+    let bake = Settings {
+        photons: 20_000,
+        face: 16,
+        ..Settings::cone()
+    };
+    // Materials are the same whatever the strands: once is enough.
+    let looks = match name {
+        "fox" => looks(&species, &bake, None, &Silent, &Cancel::default()).unwrap(),
+        _ => Vec::new(),
+    };
     let parts = Parts {
         groom: &groom,
         skin: &skin,
         species: &species,
         levels: &levels,
+        looks: &looks,
         seed: 5,
     };
     let folder = folder();

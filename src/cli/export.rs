@@ -1,15 +1,17 @@
 //! `vair export`: the fur of a species for other programs.
 
 use super::{Console, Failure, bake::parse_count};
+use crate::assembly;
+use crate::bake::{Cache, Settings};
 use crate::blame::Blame;
 use crate::export::asset::{
-    self, AssetSettings, Curves, Frame, Parts, Profile, READERS, Units, Up,
+    self, AssetSettings, ClassLook, Curves, Frame, Parts, Profile, READERS, Units, Up,
 };
 use crate::export::{ExportError, Format};
 use crate::groom::{self, Forecast, GroomSettings};
 use crate::io::check_writable;
-use crate::skin;
-use crate::species;
+use crate::skin::{self, Skin};
+use crate::species::{self, Species};
 use std::path::PathBuf;
 
 /// Text of more bytes than this is refused, and of more than the other remarked upon.
@@ -32,6 +34,10 @@ The file is a component asset: under its default prim stand the skin as a mesh (
 as curves, one prim a hair class (geo/render), few wide strands for viewports (geo/proxy) and guides
 (geo/guide). Levels of detail are the variants of `lod`; a coarser one has a quarter of the strands of
 the one before, the same strands, wider so that the coat stays opaque.
+
+Materials are Chiang's hair model (MaterialX's ND_chiang_hair_bsdf) fitted to the baked scattering table
+of each class and zone of pigment, with the error of the fit; hair that changes color along its length
+reads the absorption from its points. A preview surface stands beside each.
 
 Widths are diameters in the units of the file. The same command gives the same bytes on any number of
 threads.")]
@@ -74,6 +80,15 @@ pub(super) struct Args {
     /// Leave out the guides.
     #[arg(long)]
     no_guides: bool,
+    /// Leave out the materials, and with them the bake.
+    #[arg(long)]
+    no_material: bool,
+    /// Photons for each scattering table that a material is fitted to.
+    #[arg(long, value_parser = parse_count, default_value = "3e5")]
+    bake_photons: u64,
+    /// Bake even if the cache holds the tables, and do not store them there.
+    #[arg(long)]
+    no_cache: bool,
     /// Threads; all cores if not given. The file does not depend on it.
     #[arg(long)]
     threads: Option<usize>,
@@ -144,13 +159,14 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     }
     let strands = args.strands.map(|n| n as usize);
     let forecast = groom::forecast(&skin, &species, strands)?;
-    announce(args, &settings, &forecast, console)?;
+    announce(args, &settings, &skin, &forecast, console)?;
 
     let cancel = console.cancel();
     let grown = GroomSettings {
         strands,
         seed: args.seed,
     };
+    let looks = looks(args, &species, console)?;
     let groom = groom::grow(&skin, &species, &grown, console, cancel)?;
     let levels = asset::levels(&groom, &skin, &species, args.levels)?;
     let parts = Parts {
@@ -158,6 +174,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         skin: &skin,
         species: &species,
         levels: &levels,
+        looks: &looks,
         seed: args.seed,
     };
     for output in &args.output {
@@ -165,6 +182,36 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         console.say(format!("{}: {}", output.display(), described(&parts)));
     }
     Ok(())
+}
+
+/// Materials for other renderers, and what they lose.
+fn looks(args: &Args, species: &Species, console: &Console) -> Result<Vec<ClassLook>, Failure> {
+    if args.no_material {
+        return Ok(Vec::new());
+    }
+    let cache = if args.no_cache {
+        None
+    } else {
+        Cache::of_user()
+    };
+    let bake = Settings {
+        photons: args.bake_photons,
+        seed: args.seed,
+        ..Settings::cone()
+    };
+    let cancel = console.cancel();
+    let looks = assembly::looks(species, &bake, cache.as_ref(), console, cancel)?;
+    for (class, look) in species.classes.iter().zip(&looks) {
+        let errors: Vec<String> = (look.zones.iter())
+            .map(|zone| format!("{:.0} %", 100.0 * zone.mean_error()))
+            .collect();
+        console.say(format!(
+            "material of {}: Chiang's model, off the table by {} (S, from tip to root)",
+            class.name,
+            errors.join(", ")
+        ));
+    }
+    Ok(looks)
 }
 
 /// What was asked for in the words of the library.
@@ -216,6 +263,7 @@ fn settings(args: &Args) -> Result<AssetSettings, Failure> {
 fn announce(
     args: &Args,
     settings: &AssetSettings,
+    skin: &Skin,
     forecast: &Forecast,
     console: &Console,
 ) -> Result<(), Failure> {
@@ -223,7 +271,7 @@ fn announce(
     const OF_POINT: usize = 16;
     const OF_STRAND: usize = 64;
     let (strands, points) = (forecast.strands, forecast.points);
-    let binary = asset::estimate(strands, points, args.levels, settings);
+    let binary = asset::estimate(skin, [strands, points], args.levels, settings);
     let memory = 2 * (points * OF_POINT + strands * OF_STRAND);
     console.say(format!(
         "{strands} strands of {points} points: about {} in binary form, {} of memory",

@@ -1,5 +1,6 @@
 //! Color along a strand, without a bake: what a coat of such hair looks like from afar.
 
+use super::look::ClassLook;
 use crate::groom::Groom;
 use crate::math::fresnel;
 use crate::species::{HairClass, PigmentBand};
@@ -35,19 +36,28 @@ pub(super) struct Dye {
 }
 
 impl Zones {
-    pub(super) fn new(class: &HairClass, pigment: &[PigmentBand]) -> Self {
+    /// * `look`: the fitted absorption of each zone; that of the pigment if there is none.
+    pub(super) fn new(
+        class: &HairClass,
+        pigment: &[PigmentBand],
+        look: Option<&ClassLook>,
+    ) -> Self {
         let radius_um = 0.5 * class.groom.diameter_um;
         Self {
             edges: (pigment.iter())
                 .map(|band| [band.to_mm as f32, band.softness_mm as f32])
                 .collect(),
-            values: (pigment.iter())
-                .map(|band| {
+            values: (pigment.iter().enumerate())
+                .map(|(zone, band)| {
                     let depth = band.absorption_per_um().map(|a| a * radius_um);
                     Dye {
                         color: Vec3::from_array(depth.map(|d| coat(hair(d)) as f32)),
                         melanin: Vec3::new(band.eumelanin as f32, band.pheomelanin as f32, 0.0),
-                        absorption: Vec3::from_array(depth.map(|d| d as f32)),
+                        absorption: Vec3::from_array(
+                            look.and_then(|look| look.zones.get(zone))
+                                .map_or(depth, |look| look.absorption)
+                                .map(|a| a as f32),
+                        ),
                     }
                 })
                 .collect(),
@@ -57,6 +67,20 @@ impl Zones {
     /// Whether the hair has the same pigment from root to tip.
     pub(super) fn is_even(&self) -> bool {
         self.values.iter().all(|v| *v == self.values[0])
+    }
+
+    /// Which zone is the longest on a hair of some length.
+    pub(super) fn longest(&self, length_mm: f32) -> usize {
+        let mut from = 0.0;
+        let mut best = (0, 0.0);
+        for (zone, [to, _]) in self.edges.iter().enumerate() {
+            let to = to.min(length_mm);
+            if to - from > best.1 {
+                best = (zone, to - from);
+            }
+            from = to.max(from);
+        }
+        best.0
     }
 
     /// The value at a distance from the tip.

@@ -13,6 +13,8 @@ mod color;
 mod curves;
 mod frame;
 mod levels;
+mod look;
+mod material;
 mod profile;
 mod provenance;
 mod skin;
@@ -23,6 +25,7 @@ mod write;
 pub use curves::Curves;
 pub use frame::{Frame, Units, Up};
 pub use levels::{Level, LevelClass, levels};
+pub use look::{ClassLook, HairLook, LobeError};
 pub use profile::{Column, Profile, READERS, Reader};
 pub use tree::layer;
 pub use write::{estimate, write};
@@ -43,6 +46,8 @@ pub struct Parts<'a> {
     pub species: &'a Species,
     /// Levels of detail, the finest first; never empty.
     pub levels: &'a [Level],
+    /// Materials of the hair classes, in their order; empty for none.
+    pub looks: &'a [ClassLook],
     /// Seed of the groom.
     pub seed: u64,
 }

@@ -2,10 +2,11 @@
 
 use super::color::Zones;
 use super::levels::{Level, LevelClass, guides, proxy};
+use super::look::ClassLook;
 use super::profile::{Column, Reader};
 use super::provenance::{PROGRAM, asset_info, identifier, recipe, user_properties};
 use super::strands::Strands;
-use super::{AssetSettings, Parts, skin};
+use super::{AssetSettings, Parts, material, skin};
 use crate::export::usd::{Array, Attribute, Layer, Prim, Rows, Value, VariantSet};
 use crate::species::HairClass;
 use glam::Vec3;
@@ -67,7 +68,12 @@ impl<'a> Builder<'_, 'a> {
                 ("seed", Value::string(seed)),
             ],
         );
+        let mut scope = Prim::new("Scope", "mtl");
+        scope.children = self.materials();
         root.children.push(self.geometry());
+        if !scope.children.is_empty() {
+            root.children.push(scope);
+        }
         if let [_, _, ..] = self.parts.levels {
             root.selections
                 .push(("lod".to_owned(), self.parts.levels[0].name.to_owned()));
@@ -79,12 +85,51 @@ impl<'a> Builder<'_, 'a> {
         root
     }
 
+    /// The color of the skin.
+    fn skin_color(&self) -> Vec3 {
+        Vec3::from_array(self.parts.species.skin_color.map(|c| c as f32))
+    }
+
+    /// Path of the scope of the materials.
+    fn material_scope(&self) -> String {
+        format!("/{}/mtl", identifier(&self.parts.species.id))
+    }
+
+    fn materials(&self) -> Vec<Prim<'a>> {
+        let scope = self.material_scope();
+        let mut materials = Vec::new();
+        for (class, look) in self.parts.looks.iter().enumerate() {
+            let hair = self.class(class);
+            let zones = Zones::new(hair, &hair.pigment, Some(look));
+            let name = identifier(&hair.name);
+            materials.extend(material::materials(&scope, &name, hair, look, &zones));
+        }
+        if !materials.is_empty() {
+            materials.push(material::skin(&scope, self.skin_color()));
+        }
+        materials
+    }
+
+    fn look(&self, class: usize) -> Option<&'a ClassLook> {
+        self.parts.looks.get(class)
+    }
+
+    /// Binds a material, if there are any.
+    fn bind(&self, prim: &mut Prim<'a>, material: &str) {
+        if !self.parts.looks.is_empty() {
+            prim.api_schemas.push("MaterialBindingAPI".to_owned());
+            prim.relate(
+                "material:binding",
+                format!("{}/{material}", self.material_scope()),
+            );
+        }
+    }
+
     fn geometry(&self) -> Prim<'a> {
-        let color = Vec3::from_array(self.parts.species.skin_color.map(|c| c as f32));
         let mut geometry = Prim::new("Scope", "geo");
-        geometry
-            .children
-            .push(skin::mesh(self.parts.skin, self.settings.frame, color));
+        let mut mesh = skin::mesh(self.parts.skin, self.settings.frame, self.skin_color());
+        self.bind(&mut mesh, "skin");
+        geometry.children.push(mesh);
         let full = &self.parts.levels[0];
         let mut render = purpose("render");
         for (class, level) in self.classes(full) {
@@ -151,6 +196,15 @@ impl<'a> Builder<'_, 'a> {
         }
         curves.set_uniform("token", "wrap", Value::token(wrap));
         let name = self.class(class).name.clone();
+        if let Some(look) = self.look(class)
+            && self.settings.profile.has(Reader::Blender)
+        {
+            let hair = self.class(class);
+            let zones = Zones::new(hair, &hair.pigment, Some(look));
+            let longest = zones.longest(hair.groom.length_mm as f32);
+            user_properties(&mut curves, &material::blender(&look.zones[longest]));
+        }
+        self.bind(&mut curves, &identifier(&name));
         user_properties(
             &mut curves,
             &[
@@ -256,7 +310,7 @@ impl<'a> Builder<'_, 'a> {
     fn point_columns(&self, prim: &mut Prim<'a>, strands: &Strands<'a>, class: usize) {
         let (groom, profile) = (self.parts.groom, &self.settings.profile);
         let hair = self.class(class);
-        let zones = Arc::new(Zones::new(hair, &hair.pigment));
+        let zones = Arc::new(Zones::new(hair, &hair.pigment, self.look(class)));
         let of = Arc::clone(&zones);
         let color: Value<'a> = strands
             .vertex3(move |i, out| of.along(groom, i, |dye| dye.color, out))

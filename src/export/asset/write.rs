@@ -5,6 +5,7 @@ use crate::export::usd::{self, Form};
 use crate::export::{ExportError, Format};
 use crate::io::{AtomicFile, FileError};
 use crate::progress::{Cancel, Progress};
+use crate::skin::Skin;
 use std::io;
 use std::path::Path;
 
@@ -24,22 +25,33 @@ const COLUMNS: [Column; 12] = [
     Column::Absorption,
 ];
 
-/// Bytes of the arrays of an asset in binary form, to a few percent; text takes about four times as many.
+/// Bytes of an asset in binary form, to some ten percent; text takes about four times as many.
 ///
-/// * `levels`: of detail, each with a quarter of the strands of the one before.
-pub fn estimate(strands: usize, points: usize, levels: usize, settings: &AssetSettings) -> u64 {
-    let wanted = COLUMNS.iter().filter(|c| settings.profile.wants(**c));
+/// * `size`: strands and control points of the finest level. * `levels`: of detail, each with a quarter
+///   of the strands of the one before.
+pub fn estimate(
+    skin: &Skin,
+    [strands, points]: [usize; 2],
+    levels: usize,
+    settings: &AssetSettings,
+) -> u64 {
     let (mut of_strand, mut of_point) = (0, 16);
-    for column in wanted {
+    for column in COLUMNS.iter().filter(|c| settings.profile.wants(**c)) {
         let (strand, point) = column.bytes();
         of_strand += strand;
         of_point += point;
+    }
+    // Attributes that have the same numbers as another only cost if that one is left out.
+    if settings.profile.wants(Column::GroomColor) && !settings.profile.wants(Column::DisplayColor) {
+        of_point += 12;
     }
     let full = strands * of_strand + settings.curves.count(points) * of_point;
     let share: f64 = (0..levels.max(1))
         .map(|level| 0.25f64.powi(level as i32))
         .sum();
-    (full as f64 * share) as u64
+    // A vertex of the skin has place, normal, color and texture coordinates.
+    let skin = 44 * skin.positions.len() + 6 * skin.triangles.len();
+    (full as f64 * share) as u64 + skin as u64
 }
 
 /// Writes a groom as a component asset into one file, whole or not at all.
@@ -63,12 +75,8 @@ pub fn write(
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let layer = tree::layer(parts, settings, &name);
     let groom = parts.groom;
-    let size = estimate(
-        groom.strands(),
-        groom.points.len(),
-        parts.levels.len(),
-        settings,
-    );
+    let size = [groom.strands(), groom.points.len()];
+    let size = estimate(parts.skin, size, parts.levels.len(), settings);
     let size = match form {
         Form::Text => 4 * size,
         Form::Binary => size,
