@@ -126,8 +126,8 @@ pub fn materials_with(
         }
     }
     let mut materials = Vec::with_capacity(species.classes.len());
-    for class in &species.classes {
-        let (parts, dyes) = coat_parts(&[&class.pigment]);
+    for (index, class) in species.classes.iter().enumerate() {
+        let (parts, dyes) = coat_parts(&species.pigments(index));
         let mut tables: Vec<Vec<ScatterTable>> = vec![Vec::new(); dyes.len()];
         for station in &class.stations {
             if let Some(table) = nearest(given, class, station) {

@@ -19,7 +19,8 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Examples:
   vair gallery -o sheet.png
   vair gallery --species cat,lynx,bobcat --columns sem,light,section --row-height 300 -o cats.png
-  vair gallery --quality full --pages docs/library")]
+  vair gallery --quality full --pages docs/library
+  vair gallery --coats 6 --row-height 300 -o coats.png")]
 pub(super) struct Args {
     /// Which animals, built-in names or paths of species files; all built-in ones if not given.
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
@@ -35,6 +36,9 @@ pub(super) struct Args {
         default_value = "sem,light,cutaway,lobe,swatch"
     )]
     columns: Vec<ColumnArg>,
+    /// Instead of the library: so many of the built-in coats on the built-in body.
+    #[arg(long, value_name = "COUNT", conflicts_with_all = ["species", "columns", "pages"])]
+    coats: Option<usize>,
     /// Height of the sheet's pictures, pixels.
     #[arg(long, default_value_t = 144)]
     row_height: usize,
@@ -150,6 +154,14 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
             cancel: console.cancel(),
         },
     };
+    if let Some(count) = args.coats {
+        let sheet = gallery::coats_sheet(&work.studio, count, args.row_height, console);
+        let sheet = sheet.map_err(|error| Failure::new(error.blame(), error))?;
+        for path in &args.output {
+            sheet.write_png(path)?;
+        }
+        return Ok(());
+    }
     let mut refused = Vec::new();
     if !args.output.is_empty() {
         work.sheet(&animals, &mut refused)?;

@@ -8,7 +8,8 @@ use crate::species;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   vair schema species > species.schema.json
-  vair schema pattern > pattern.schema.json")]
+  vair schema pattern > pattern.schema.json
+  vair schema coat > coat.schema.json")]
 pub(super) struct Args {
     /// Which files.
     #[arg(value_enum, default_value_t = Format::Species)]
@@ -21,6 +22,8 @@ enum Format {
     Species,
     /// Recipes of scale patterns.
     Pattern,
+    /// Recipes of coats.
+    Coat,
 }
 
 /// Runs the command.
@@ -31,6 +34,7 @@ pub(super) fn run(args: &Args, _console: &Console) -> Result<(), Failure> {
     let schema = match args.format {
         Format::Species => species::json_schema(),
         Format::Pattern => species::pattern_schema(),
+        Format::Coat => species::coat_schema(),
     };
     print_json(&schema)
 }

@@ -1,6 +1,7 @@
 //! The library in pictures: for every animal its scales, its medulla, how one hair scatters light and
 //! how the fur looks; as a contact sheet or as pages of Markdown.
 
+mod coats;
 mod pages;
 mod sheet;
 mod swatch;
@@ -8,6 +9,7 @@ mod swatch;
 #[cfg(test)]
 mod tests;
 
+pub use coats::{COATS, coats_sheet};
 pub use pages::{Page, Picture, index, page, pictures_of};
 pub use sheet::{ROW_HEIGHTS, Row, picture_size, sheet};
 
@@ -22,7 +24,7 @@ use crate::progress::{Cancel, Silent};
 use crate::render::RenderError;
 use crate::scene::SceneError;
 use crate::skin::SkinError;
-use crate::species::{HairClass, Species, Station};
+use crate::species::{HairClass, Species, SpeciesError, Station};
 use crate::table::{TableError, draw_lobe};
 
 /// A kind of picture of an animal.
@@ -119,6 +121,9 @@ impl Quality {
 /// A picture that cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum GalleryError {
+    /// No species.
+    #[error(transparent)]
+    Species(#[from] SpeciesError),
     /// The fiber cannot be built.
     #[error(transparent)]
     Fiber(#[from] FiberError),
@@ -152,6 +157,7 @@ impl GalleryError {
     /// Who has to act.
     pub fn blame(&self) -> Blame {
         match self {
+            Self::Species(error) => error.blame(),
             Self::Fiber(error) => error.blame(),
             Self::Micrograph(error) => error.blame(),
             Self::Assembly(error) => error.blame(),
@@ -206,7 +212,7 @@ impl Studio<'_> {
             Column::Section => (View::Section, micrograph),
             Column::Cutaway => (View::Cutaway, 2 * micrograph),
             Column::Lobe => return self.lobe(species, class, size),
-            Column::Swatch => return swatch::draw(self, species, size),
+            Column::Swatch => return swatch::draw(self, species, &swatch::SWATCH, size),
         };
         let station = widest(class);
         let fiber = Fiber::build(&station.structure, 0)?;

@@ -1,4 +1,4 @@
-//! A piece of fur in the studio.
+//! Fur in the studio: a piece of it, or a whole animal in its coat.
 
 use super::{GalleryError, Studio};
 use crate::assembly;
@@ -14,22 +14,43 @@ use glam::Vec3;
 /// Even, or a palette of few colors shows steps in it.
 const BACKDROP: Vec3 = Vec3::splat(0.2);
 
+/// What stands in the studio.
+pub(super) struct Model {
+    /// A built-in skin.
+    pub(super) skin: &'static str,
+    /// 1 shows all of it.
+    pub(super) zoom: f32,
+    /// Strands over those of a swatch.
+    pub(super) strands: usize,
+    /// Reflectance of a floor.
+    pub(super) ground: Option<f32>,
+}
+
+/// A piece of fur.
+pub(super) const SWATCH: Model = Model {
+    skin: "swatch",
+    zoom: 1.5,
+    strands: 1,
+    ground: None,
+};
+
 pub(super) fn draw(
     studio: &Studio,
     species: &Species,
+    model: &Model,
     (width, height): (usize, usize),
 ) -> Result<Canvas, GalleryError> {
     let cancel = studio.cancel;
     let bake = studio.bake();
     let materials = assembly::materials(species, &bake, studio.cache, &Silent, cancel)?;
-    let skin = skin::load("swatch")?;
+    let skin = skin::load(model.skin)?;
     let settings = GroomSettings {
-        strands: Some(studio.quality.strands),
+        strands: Some(model.strands * studio.quality.strands),
         seed: 0,
     };
     let groom = groom::grow(&skin, species, &settings, &Silent, cancel)?;
     let view = View {
-        zoom: 1.5,
+        zoom: model.zoom,
         ..View::from_direction(skin.view)
     };
     let color = Vec3::from_array(species.skin_color.map(|c| c as f32));
@@ -39,7 +60,7 @@ pub(super) fn draw(
         skin: Some((&skin, color)),
         environment: Environment::studio().turned(view.yaw_deg),
         backdrop: Backdrop::Plain(BACKDROP),
-        ground: None,
+        ground: model.ground,
         view,
     })?;
     let job = RenderJob {

@@ -13,6 +13,7 @@ use crate::sampling::{Rng, hash64};
 use crate::skin::Skin;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// Least distance of two points over that of a hexagonal packing of as many. Random darts fill up
 /// at 0.78; the closer to that, the more darts miss (12 for a hit at 0.68, more than 100 at 0.76).
@@ -54,6 +55,8 @@ pub(super) struct Root {
 /// The skin as something to throw darts at, uniformly by area times density factor.
 pub(super) struct Surface<'a> {
     skin: &'a Skin,
+    /// Density factor at each vertex.
+    density: Cow<'a, [f32]>,
     /// Running sum of area times largest corner density.
     cumulative: Vec<f64>,
     weighted_area: f64,
@@ -63,11 +66,22 @@ pub(super) struct Surface<'a> {
 impl<'a> Surface<'a> {
     pub(super) fn new(skin: &'a Skin) -> Result<Self, GroomError> {
         check(skin)?;
+        Self::with_density(skin, Cow::Borrowed(&skin.density))
+    }
+
+    /// The same density wherever there is hair at all.
+    pub(super) fn even(skin: &'a Skin) -> Result<Self, GroomError> {
+        check(skin)?;
+        let any = skin.density.iter().map(|&d| f32::from(u8::from(d > 0.0)));
+        Self::with_density(skin, any.collect())
+    }
+
+    fn with_density(skin: &'a Skin, density: Cow<'a, [f32]>) -> Result<Self, GroomError> {
         let (mut sum, mut weighted_area, mut densest) = (0.0, 0.0, 0.0f32);
         let cumulative = (0..skin.triangles.len())
             .map(|i| {
                 let area = skin.triangle_area(i);
-                let [a, b, c] = skin.triangles[i].map(|v| skin.density[v as usize]);
+                let [a, b, c] = skin.triangles[i].map(|v| density[v as usize]);
                 let top = a.max(b).max(c);
                 densest = densest.max(top);
                 weighted_area += area * f64::from(a + b + c) / 3.0;
@@ -83,6 +97,7 @@ impl<'a> Surface<'a> {
         }
         Ok(Self {
             skin,
+            density,
             cumulative,
             weighted_area,
             densest,
@@ -150,9 +165,9 @@ impl<'a> Surface<'a> {
             triangle: triangle as u32,
             barycentric: [u, v],
         };
-        let corners = self.skin.triangles[triangle].map(|v| self.skin.density[v as usize]);
+        let corners = self.skin.triangles[triangle].map(|v| self.density[v as usize]);
         let top = corners[0].max(corners[1]).max(corners[2]);
-        let density = self.blend(&follicle, &self.skin.density);
+        let density = self.blend(&follicle, &self.density);
         (rng.uniform_f32() * top < density).then_some((follicle, density))
     }
 

@@ -1,6 +1,7 @@
 //! Strands of fur on a skin, in flat arrays.
 
 mod clump;
+mod coat;
 mod error;
 mod field;
 mod follicle;
@@ -15,6 +16,7 @@ pub use plan::{DEFAULT_STRANDS, MAX_CLASSES, MAX_STRANDS};
 use crate::progress::{Cancel, Progress};
 use crate::skin::Skin;
 use crate::species::Species;
+use coat::Coat;
 use field::Field;
 use follicle::Surface;
 use glam::{Vec2, Vec3};
@@ -54,6 +56,8 @@ pub struct Groom {
     pub classes: Vec<String>,
     /// Names of the parts of the coat's pattern; the first has the pigment of the species itself.
     pub coats: Vec<String>,
+    /// What could not be grown as asked, one sentence each.
+    pub warnings: Vec<String>,
     /// Per class: factor on the natural diameter by which a thinned groom stays opaque; 1 at full
     /// density.
     pub width_scale: Vec<f32>,
@@ -160,9 +164,18 @@ pub fn grow(
         .collect();
     let scattered = scattered?;
 
+    let coat = match &species.coat {
+        Some(recipe) => Some(Coat::paint(skin, recipe, settings.seed, cancel)?),
+        None => None,
+    };
     let field = (skin.gravity == 0.0).then(|| Field::new(skin));
     let mut groom = Groom {
         classes: species.classes.iter().map(|c| c.name.clone()).collect(),
+        coats: match &species.coat {
+            Some(recipe) => recipe.parts(),
+            None => vec!["own".to_owned()],
+        },
+        warnings: coat.iter().flat_map(|c| c.warnings.clone()).collect(),
         width_scale: plan.iter().map(|c| c.width_scale as f32).collect(),
         natural: plan.iter().map(|c| c.natural).collect(),
         offsets: vec![0],
@@ -185,19 +198,27 @@ pub fn grow(
         groom.widths.resize(groom.points.len(), 0.0);
         let first = groom.normal.len();
         groom.normal.resize(first + follicles.len(), Vec3::ZERO);
+        groom.coat.resize(first + follicles.len(), 0);
         groom.points[start..]
             .par_chunks_mut(per_strand)
             .zip(groom.widths[start..].par_chunks_mut(per_strand))
             .zip(groom.normal[first..].par_iter_mut())
+            .zip(groom.coat[first..].par_iter_mut())
             .zip(follicles.par_iter().enumerate())
             .with_min_len(1024)
-            .for_each(|(((points, widths), normal), (rank, follicle))| {
+            .for_each(|((((points, widths), normal), part), (rank, follicle))| {
                 if rank % 1024 == 0 {
                     progress.advance(1024.min(follicles.len() - rank) as u64);
                 }
                 let id = (class as u32) << CLASS_SHIFT | rank as u32;
                 if !cancel.is_cancelled() {
-                    *normal = grower.grow(id, &surface.root(follicle), points, widths);
+                    let mut root = surface.root(follicle);
+                    if let Some(coat) = &coat {
+                        let (zone, hair) = coat.choose(id, root.position, root.normal);
+                        *part = zone;
+                        root.length *= hair;
+                    }
+                    *normal = grower.grow(id, &root, points, widths);
                 }
             });
         if cancel.is_cancelled() {

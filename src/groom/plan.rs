@@ -77,6 +77,8 @@ pub(super) fn plan(
         });
     }
     check_spacing(skin, area_m2, total)?;
+    // Short hair covers less.
+    let hair = species.coat.as_ref().map_or(1.0, |coat| coat.hair);
     let weights: Vec<f64> = (species.classes.iter().zip(&natural))
         .map(|(class, natural)| {
             let hair = class.groom.length_mm * class.groom.diameter_um;
@@ -87,7 +89,7 @@ pub(super) fn plan(
     Ok((0..counts.len())
         .map(|i| {
             let groom = &species.classes[i].groom;
-            let hair_area = groom.length_mm * 1e-3 * groom.diameter_um * 1e-6;
+            let hair_area = hair * groom.length_mm * 1e-3 * groom.diameter_um * 1e-6;
             ClassPlan {
                 strands: counts[i],
                 natural: natural[i],

@@ -88,11 +88,12 @@ pub(super) fn fox() -> Species {
         summary: String::new(),
         classes: vec![class("guard", guard), class("under", under)],
         skin_color: [0.5; 3],
+        coat: None,
         text: String::new(),
     }
 }
 
-fn grown(skin: &Skin, species: &Species, strands: usize, seed: u64) -> Groom {
+pub(super) fn grown(skin: &Skin, species: &Species, strands: usize, seed: u64) -> Groom {
     let settings = GroomSettings {
         strands: Some(strands),
         seed,

@@ -3,6 +3,7 @@
 //! X is forward, Y up, the ground is y = 0. Proportions follow a red fox of about 65 cm (Larivière
 //! and Pasitschniak-Arts 1996, "Vulpes vulpes", Mammalian Species 537) without its fur.
 
+use super::landmarks::{Landmark, along};
 use super::sculpt::{Group, Part, Sculpture, Shape};
 use super::{Skin, builtin, surface_nets};
 use glam::{EulerRot, Mat3, Quat, Vec2, Vec3};
@@ -31,6 +32,9 @@ pub(super) fn body() -> Skin {
         triangles,
         floor: Some(0.0),
         view: Vec3::new(0.62, 0.22, 0.75).normalize(),
+        front: Vec3::X,
+        landmarks: landmarks(),
+        body: Some(BODY),
         ..Skin::default()
     };
     for vertex in vertices {
@@ -223,9 +227,9 @@ fn head() -> Group {
     }
 }
 
-/// The tail goes out behind and comes forward along the right side.
-fn tail() -> Group {
-    let path = [
+/// Points of the tail's axis and radii there, centimeters.
+fn tail_path() -> [(Vec3, f32); 8] {
+    [
         (cm(-22.0, 11.0, 0.0), 2.2),
         (cm(-30.0, 7.0, 2.0), 1.9),
         (cm(-34.5, 4.6, 9.5), 1.9),
@@ -234,7 +238,12 @@ fn tail() -> Group {
         (cm(-11.0, 3.6, 21.0), 1.9),
         (cm(-3.0, 3.1, 19.8), 1.2),
         (cm(2.0, 2.7, 18.2), 0.5),
-    ];
+    ]
+}
+
+/// The tail goes out behind and comes forward along the right side.
+fn tail() -> Group {
+    let path = tail_path();
     const PIECES: usize = 5;
     let mut line: Vec<(Vec3, f32)> = Vec::new();
     for k in 0..path.len() - 1 {
@@ -282,6 +291,79 @@ const BARE: [(Vec3, Vec3); 3] = [
         Vec3::new(0.0075, 0.0072, 0.0090),
     ),
 ];
+
+/// From nose to root of the tail over crown and back, meters.
+const BODY: f32 = 0.62;
+
+/// Where named places are, near the skin.
+fn landmarks() -> Vec<(Landmark, Vec<Vec3>)> {
+    let head = |x, y, z| HEAD + head_axes() * cm(x, y, z);
+    let both = |at: &dyn Fn(f32) -> Vec3| vec![at(1.0), at(-1.0)];
+    let eye_line = |side: f32| {
+        along(&[
+            head(8.6, -1.4, 0.9 * side),
+            head(4.3, 0.9, 2.3 * side),
+            head(1.0, 2.0, 3.2 * side),
+            head(-1.0, 3.2, 3.2 * side),
+        ])
+    };
+    vec![
+        (Landmark::Nose, vec![head(10.3, -1.0, 0.0)]),
+        (
+            Landmark::Chin,
+            along(&[
+                head(8.2, -3.6, 0.0),
+                head(4.0, -4.0, 0.0),
+                head(0.5, -4.6, 0.0),
+            ]),
+        ),
+        (Landmark::Cheeks, both(&|side| head(0.2, -2.0, 4.9 * side))),
+        (Landmark::Eyes, both(&|side| head(4.3, 0.75, 2.6 * side))),
+        (Landmark::EyeLine, [eye_line(1.0), eye_line(-1.0)].concat()),
+        (Landmark::Crown, vec![head(0.0, 4.5, 0.0)]),
+        (Landmark::Ears, both(&|side| head(-2.3, 10.4, 5.0 * side))),
+        (
+            Landmark::Bib,
+            along(&[
+                cm(21.5, 22.5, 0.4),
+                cm(19.3, 17.0, 0.0),
+                cm(18.6, 11.5, 0.0),
+                cm(17.0, 6.0, 0.0),
+            ]),
+        ),
+        (
+            Landmark::Belly,
+            along(&[cm(10.0, 4.0, 0.0), cm(-6.0, 4.0, 0.0), cm(-18.0, 4.2, 0.0)]),
+        ),
+        (
+            Landmark::Spine,
+            along(&[
+                head(-1.0, 4.6, 0.0),
+                head(-5.5, 1.0, 0.0),
+                cm(13.0, 23.0, 0.0),
+                cm(6.0, 19.6, 0.0),
+                cm(-4.0, 18.6, 0.0),
+                cm(-15.0, 18.4, 0.0),
+                cm(-22.5, 14.5, 0.0),
+            ]),
+        ),
+        (Landmark::Shoulders, both(&|side| cm(9.5, 11.0, 8.5 * side))),
+        (Landmark::Rump, both(&|side| cm(-17.0, 11.0, 9.8 * side))),
+        (
+            Landmark::Tail,
+            along(&tail_path().map(|(center, radius)| center + 0.01 * radius * Vec3::Y)),
+        ),
+        (Landmark::TailTip, vec![tail_path()[7].0]),
+        (
+            Landmark::Paws,
+            [
+                both(&|side| cm(28.5, 1.9, 5.1 * side)),
+                both(&|side| cm(1.2, 1.8, 9.7 * side)),
+            ]
+            .concat(),
+        ),
+    ]
+}
 
 /// Bare, dark, shiny places: balls of their own that stick out of the skin.
 fn add_eyes_and_nose(skin: &mut Skin) {

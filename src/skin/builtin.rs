@@ -69,6 +69,7 @@ pub(super) fn ball() -> Skin {
         }
     });
     skin.name = "ball".to_owned();
+    skin.front = Vec3::Z;
     skin.view = Vec3::new(0.0, 0.25, 1.0).normalize();
     skin
 }
@@ -92,6 +93,7 @@ pub(super) fn swatch() -> Skin {
         }
     });
     skin.name = "swatch".to_owned();
+    skin.front = Vec3::NEG_Z;
     skin.view = Vec3::new(0.0, 0.2, 1.0).normalize();
     skin
 }
@@ -116,6 +118,7 @@ pub(super) fn tress() -> Skin {
         }
     });
     skin.name = "tress".to_owned();
+    skin.front = Vec3::Z;
     skin.view = Vec3::new(0.0, 0.0, 1.0);
     skin.gravity = 1.0;
     skin

@@ -15,6 +15,12 @@ pub enum SkinError {
     /// The file could not be read or is no mesh.
     #[error("skin {0}")]
     Mesh(#[from] MeshFileError),
+    /// A unit that is none.
+    #[error("the unit of the skin is {unit_m} m, expected a finite number above 0")]
+    Unit {
+        /// Meters in a unit of the file.
+        unit_m: f32,
+    },
     /// No usable triangle.
     #[error("skin {file}: no usable face among {faces}")]
     Empty {

@@ -3,6 +3,7 @@
 mod body;
 mod builtin;
 mod error;
+mod landmarks;
 mod raw;
 mod sculpt;
 mod surface_nets;
@@ -10,6 +11,7 @@ mod surface_nets;
 mod tests;
 
 pub use error::SkinError;
+pub use landmarks::Landmark;
 
 use crate::mesh_file::{self, Format};
 use glam::{Vec2, Vec3};
@@ -47,6 +49,13 @@ pub struct Skin {
     pub floor: Option<f32>,
     /// Direction from the subject to a camera that shows it well, unit.
     pub view: Vec3,
+    /// Direction in which the head looks, unit and level.
+    pub front: Vec3,
+    /// Where named places of the body are; empty for skins that are no bodies.
+    pub landmarks: Vec<(Landmark, Vec<Vec3>)>,
+    /// Length of the body from nose to root of the tail, meters, of built-in bodies: coats are scaled to
+    /// it. `None` where millimeters of a pattern are taken as they are.
+    pub body: Option<f32>,
     /// What the loader mended or finds odd, one sentence each; empty for built-in skins.
     pub warnings: Vec<String>,
 }
@@ -65,6 +74,64 @@ pub fn load(name_or_path: &str) -> Result<Skin, SkinError> {
     }
 }
 
+/// How a mesh file is meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placing {
+    /// Meters in a unit of the file.
+    pub unit_m: f32,
+    /// Which axis of the file points up.
+    pub up: Up,
+}
+
+/// An axis that points up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Up {
+    /// As in this program.
+    Y,
+    /// (x, y, z) becomes (x, z, -y).
+    Z,
+}
+
+impl Default for Placing {
+    fn default() -> Self {
+        Self {
+            unit_m: 1.0,
+            up: Up::Y,
+        }
+    }
+}
+
+/// As [`load`], for files in other units or with another axis up. Built-in skins are what they are.
+///
+/// # Errors
+/// As [`load`]; a unit that is not a positive number, or a mesh that such a unit makes endless.
+pub fn load_placed(name_or_path: &str, placing: Placing) -> Result<Skin, SkinError> {
+    if BUILT_IN.contains(&name_or_path) {
+        return load(name_or_path);
+    }
+    if !(placing.unit_m.is_finite() && placing.unit_m > 0.0) {
+        return Err(SkinError::Unit {
+            unit_m: placing.unit_m,
+        });
+    }
+    let path = Path::new(name_or_path);
+    if Format::of(path).is_none() {
+        return load_file(name_or_path);
+    }
+    let mut mesh = mesh_file::read(path)?;
+    let turned = |v: Vec3| match placing.up {
+        Up::Y => v,
+        Up::Z => Vec3::new(v.x, v.z, -v.y),
+    };
+    for p in &mut mesh.positions {
+        *p = turned(*p) * placing.unit_m;
+    }
+    for n in &mut mesh.normals {
+        *n = turned(*n);
+    }
+    mesh.into_skin(name_or_path)
+}
+
 fn load_file(name: &str) -> Result<Skin, SkinError> {
     let path = Path::new(name);
     if Format::of(path).is_none() {
@@ -81,6 +148,10 @@ impl Skin {
         for p in &mut self.positions {
             *p *= factor;
         }
+        for point in self.landmarks.iter_mut().flat_map(|(_, points)| points) {
+            *point *= factor;
+        }
+        self.body = self.body.map(|length| length * factor);
         self.floor = self.floor.map(|height| height * factor);
     }
 

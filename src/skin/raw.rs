@@ -1,6 +1,7 @@
 //! From what a mesh file says to a skin that keeps its promises.
 
 use super::builtin::tangent;
+use super::landmarks;
 use super::{Skin, SkinError};
 use crate::mesh_file::RawMesh;
 use glam::{Vec2, Vec3};
@@ -32,6 +33,12 @@ impl RawMesh {
             }
             warnings.push("the mesh is closed but faces inward: turned inside out".to_owned());
         }
+        let shared = crowded_edges(&triangles);
+        if shared > 0 {
+            warnings.push(format!(
+                "{shared} edges belong to more than two faces: hair grows on all of them"
+            ));
+        }
         let mut skin = self.compact(triangles);
         skin.name = std::path::Path::new(file)
             .file_name()
@@ -41,8 +48,13 @@ impl RawMesh {
         let size = (hi - lo).max_element();
         if !(SMALL..=LARGE).contains(&size) {
             warnings.push(format!(
-                "the mesh is {size} m large: skins are in meters, so it may need scaling"
+                "the mesh is {size} m large: if the file is not in meters, say so by --skin-units"
             ));
+        }
+        if self.uvs.is_empty() {
+            warnings.push(
+                "the file has no texture coordinates: they go round the vertical axis".to_owned(),
+            );
         }
         comb(&mut skin, hi - lo);
         skin.warnings = warnings;
@@ -165,6 +177,17 @@ fn is_inside_out(positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
     volume < 0.0 && balance.values().all(|&b| b == 0)
 }
 
+/// Edges of more than two triangles.
+fn crowded_edges(triangles: &[[u32; 3]]) -> usize {
+    let mut count: HashMap<(u32, u32), u32> = HashMap::with_capacity(2 * triangles.len());
+    for t in triangles {
+        for (from, to) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
+            *count.entry((from.min(to), from.max(to))).or_default() += 1;
+        }
+    }
+    count.values().filter(|&&n| n > 2).count()
+}
+
 /// Head to tail is unknown: along the longest horizontal axis, and down.
 fn comb(skin: &mut Skin, size: Vec3) {
     let back = if size.x >= size.z {
@@ -172,6 +195,8 @@ fn comb(skin: &mut Skin, size: Vec3) {
     } else {
         Vec3::NEG_Z
     };
+    skin.front = -back;
+    skin.landmarks = landmarks::guess(skin, -back);
     let flow = back + 0.5 * Vec3::NEG_Y;
     let count = skin.positions.len();
     skin.combing = skin.normals.iter().map(|&n| tangent(flow, n)).collect();

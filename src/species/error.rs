@@ -24,6 +24,14 @@ pub enum SpeciesError {
         /// The ids of the species.
         ids: Vec<&'static str>,
     },
+    /// Neither a built-in coat nor the path of a TOML file.
+    #[error("there is no built-in coat \"{}\" ({hint})", printable(name))]
+    UnknownCoat {
+        /// What was asked for.
+        name: String,
+        /// What to do.
+        hint: String,
+    },
     /// The file could not be read.
     #[error(transparent)]
     File(#[from] FileError),
@@ -37,7 +45,10 @@ impl SpeciesError {
     pub fn blame(&self) -> Blame {
         match self {
             Self::File(error) => error.blame(),
-            Self::UnknownName { .. } | Self::Ambiguous { .. } | Self::Invalid(_) => Blame::Input,
+            Self::UnknownName { .. }
+            | Self::UnknownCoat { .. }
+            | Self::Ambiguous { .. }
+            | Self::Invalid(_) => Blame::Input,
         }
     }
 }

@@ -6,6 +6,7 @@
 
 mod build;
 mod check;
+mod coat;
 mod error;
 mod fields;
 mod library;
@@ -23,6 +24,10 @@ mod stations;
 mod tree;
 mod words;
 
+pub use coat::{
+    COAT_LIBRARY, CoatLayer, CoatLimit, CoatPattern, CoatRecipe, CoatZone, Extent, Join, Lay,
+    MAX_ZONES, Side, Turing, coat_names,
+};
 pub use error::{Place, Problem, SpeciesError, SpeciesErrors};
 pub use library::{LIBRARY, ids};
 pub use materials::{Boundary, Filling, Material, Materials, Rgb};
@@ -32,7 +37,7 @@ pub use pattern::{
     CuticlePattern, CyclesPer, MarginTerm, MarginWave, PATTERN_LIBRARY, PatternLayout,
     PatternRecipe, RowPhase, pattern_names,
 };
-pub use schema::{json_schema, pattern_schema};
+pub use schema::{coat_schema, json_schema, pattern_schema};
 pub use start::{is_id, start_from};
 
 use crate::io::{FileError, read_bounded};
@@ -78,6 +83,24 @@ pub fn load_with_origins(
         .file_stem()
         .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     Ok(parse(&text, &id, name_or_path, overrides)?)
+}
+
+impl Species {
+    /// Gives it another coat: a built-in one by its name, one from the file at a path that ends in `.toml`,
+    /// or `none`.
+    ///
+    /// # Errors
+    /// An unknown name, an unreadable file, or everything that is wrong with it.
+    pub fn wear(&mut self, coat: &str) -> Result<(), SpeciesError> {
+        if coat == "none" {
+            self.coat = None;
+            return Ok(());
+        }
+        let (recipe, text) = coat::coat_of(coat, Path::new(""))?;
+        self.text.push_str(&build::as_comment(coat, &text));
+        self.coat = Some(recipe);
+        Ok(())
+    }
 }
 
 /// Reads the text of a species file.

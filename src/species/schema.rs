@@ -1,6 +1,7 @@
 //! The JSON Schema of species files, from the same field descriptions that the reader uses. Editors
 //! complete and check with it; the rules that join several values are the reader's alone.
 
+use super::coat::COAT;
 use super::fields;
 use super::pattern::PATTERN;
 use super::shape::{Choice, Field, Kind, Presence, Range, Shape};
@@ -26,6 +27,17 @@ pub fn pattern_schema() -> Value {
     let mut root = table(&PATTERN, &mut definitions);
     root["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
     root["title"] = json!("Vair scale pattern");
+    definitions.insert("source".to_owned(), source());
+    root["$defs"] = Value::Object(definitions);
+    root
+}
+
+/// The schema of coat recipes (draft 2020-12).
+pub fn coat_schema() -> Value {
+    let mut definitions = Map::new();
+    let mut root = table(&COAT, &mut definitions);
+    root["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
+    root["title"] = json!("Vair coat");
     definitions.insert("source".to_owned(), source());
     root["$defs"] = Value::Object(definitions);
     root
@@ -176,5 +188,12 @@ mod tests {
     fn committed_pattern_file_is_the_schema() {
         let committed = include_str!("../../schemas/pattern.schema.json");
         assert_eq!(committed, format!("{:#}\n", super::pattern_schema()));
+    }
+
+    /// To renew the file: `cargo run --release -- schema coat > schemas/coat.schema.json`.
+    #[test]
+    fn committed_coat_file_is_the_schema() {
+        let committed = include_str!("../../schemas/coat.schema.json");
+        assert_eq!(committed, format!("{:#}\n", super::coat_schema()));
     }
 }

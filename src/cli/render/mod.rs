@@ -13,7 +13,7 @@ use crate::groom::{self, GroomSettings};
 use crate::io::check_writable;
 use crate::render::{Crop, Film, Filter, RenderJob, Sampler};
 use crate::scene::{Backdrop, Environment, Scene, SceneParts, Sun, View, load_environment};
-use crate::skin::{self, Skin};
+use crate::skin::{self, Placing, Skin, Up};
 use crate::species;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
@@ -27,14 +27,25 @@ use std::time::Duration;
   vair render harbor-seal --azimuths 8 -o seal.png
   vair render red-fox --table guard-small.exr --table under-small.exr -o fox.png
   vair render red-fox --model chiang-fit -o shader.png
+  vair render cat --coat leopard -o leopard.png
   vair render mink --skin sofa.obj --strands 1e6 -o sofa.png
   vair render red-fox --crop 200,150,64,64 --spp 256 -o eye.exr")]
 pub(super) struct Args {
     /// A built-in species or a path to a species file.
     name: String,
-    /// What the fur grows on: body, ball, swatch, tress, or an OBJ or PLY mesh in meters.
+    /// Pattern of the coat: tabby, leopard, zebra, badger, fox, cow, countershaded, siamese,
+    /// tortoiseshell, the path of a recipe, or none; if not given, that of the species.
+    #[arg(long, value_name = "NAME")]
+    coat: Option<String>,
+    /// What the fur grows on: body, ball, swatch, tress, or an OBJ, PLY or glTF mesh.
     #[arg(long, default_value = "body")]
     skin: String,
+    /// What a unit of the skin's file is.
+    #[arg(long, value_enum, default_value = "m")]
+    skin_units: UnitArg,
+    /// Which axis of the skin's file points up.
+    #[arg(long, value_enum, default_value = "y")]
+    skin_up: UpArg,
     /// The light: studio, sky, white, or a latitude-longitude EXR or HDR file.
     #[arg(long, default_value = "studio")]
     env: String,
@@ -141,6 +152,26 @@ pub(super) struct Args {
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum UnitArg {
+    /// Meters.
+    M,
+    /// Centimeters.
+    Cm,
+    /// Millimeters.
+    Mm,
+    /// Inches.
+    In,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum UpArg {
+    /// Y, as in glTF.
+    Y,
+    /// Z, as in Blender.
+    Z,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum SamplerArg {
     /// Resampled products of scattering and environment.
     Qsir,
@@ -181,7 +212,10 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
 
 fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     // All that can be refused is refused before any work.
-    let species = species::load(&args.name, &args.set)?;
+    let mut species = species::load(&args.name, &args.set)?;
+    if let Some(coat) = &args.coat {
+        species.wear(coat)?;
+    }
     let job = job(args)?;
     job.check()?;
     if args.mitsuba.is_some() && args.model != ModelArg::Chiang {
@@ -200,7 +234,21 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     }
     let given = args.table.iter().map(|path| material::given_table(path));
     let given = given.collect::<Result<Vec<_>, Failure>>()?;
-    let skin = skin::load(&args.skin)?;
+    let skin = skin::load_placed(
+        &args.skin,
+        Placing {
+            unit_m: match args.skin_units {
+                UnitArg::M => 1.0,
+                UnitArg::Cm => 0.01,
+                UnitArg::Mm => 0.001,
+                UnitArg::In => 0.0254,
+            },
+            up: match args.skin_up {
+                UpArg::Y => Up::Y,
+                UpArg::Z => Up::Z,
+            },
+        },
+    )?;
     let view = view(args, &skin)?;
     let environment = environment(args, &view)?;
     for warning in &skin.warnings {
@@ -217,6 +265,9 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     };
     let groom = groom::grow(&skin, &species, &settings, console, cancel)?;
     stages.end("groom");
+    for warning in &groom.warnings {
+        console.say(format!("warning: {warning}"));
+    }
     console.say(format!("{} strands on {}", groom.strands(), args.skin));
     let color = Vec3::from_array(species.skin_color.map(|c| c as f32));
     let scene = Scene::build(SceneParts {

@@ -14,6 +14,7 @@ impl From<SpeciesError> for Failure {
             SpeciesError::Ambiguous { .. } => {
                 Self::with_help(blame, &error, "give the id of one of them")
             }
+            SpeciesError::UnknownCoat { .. } => Self::new(blame, error),
             SpeciesError::File(error) => Self::new(blame, error),
             SpeciesError::Invalid(errors) => Self {
                 blame,

@@ -3,7 +3,7 @@
 use crate::blame::Blame;
 use crate::mesh_file::{Format, parse};
 use crate::sampling::Rng;
-use crate::skin::{Skin, SkinError, load};
+use crate::skin::{Placing, Skin, SkinError, Up, load, load_placed};
 use glam::Vec3;
 
 fn obj(file: &str, bytes: &[u8]) -> Result<Skin, SkinError> {
@@ -92,7 +92,9 @@ fn cube_ply_binary(big: bool) -> Vec<u8> {
 
 fn assert_is_the_cube(skin: &Skin) {
     assert_eq!((skin.positions.len(), skin.triangles.len()), (8, 12));
-    assert_eq!(skin.warnings, Vec::<String>::new());
+    // The cube is sound; only texture coordinates are made up.
+    assert_eq!(skin.warnings.len(), 1, "{:?}", skin.warnings);
+    assert!(skin.warnings[0].contains("no texture coordinates"));
     assert!((skin.area() - 6.0).abs() < 1e-6);
     assert!((super::volume(skin, 0..12) - 1.0).abs() < 1e-6);
     // Weighted by angle, a cube's corner normal is the diagonal however the sides are cut.
@@ -162,6 +164,40 @@ fn what_is_mended_is_counted() {
     );
     skin.scale(0.001);
     assert!((skin.area() - 0.5 * 0.065 * 0.065).abs() < 1e-8);
+}
+
+#[test]
+fn edges_of_three_faces_are_counted() {
+    let cube = cube_obj(|v| format!("{}", v + 1));
+    let fin = format!("{cube}v 0.5 0.5 9\nf 1 2 9\n");
+    let said = obj("fin.obj", fin.as_bytes()).unwrap().warnings.join("; ");
+    assert!(
+        said.contains("1 edges belong to more than two faces"),
+        "{said}"
+    );
+}
+
+#[test]
+fn units_and_the_axis_that_points_up_are_as_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("tall.obj");
+    // 650 mm along the file's z, 200 along x.
+    std::fs::write(&path, "v 0 0 0\nv 200 0 0\nv 0 0 650\nf 1 2 3\n").unwrap();
+    let path = path.to_str().unwrap();
+    let placing = Placing {
+        unit_m: 1e-3,
+        up: Up::Z,
+    };
+    let (lo, hi) = load_placed(path, placing).unwrap().bounds();
+    assert!((hi - lo).distance(Vec3::new(0.2, 0.65, 0.0)) < 1e-6);
+    let nothing = Placing {
+        unit_m: 0.0,
+        up: Up::Y,
+    };
+    let refused = load_placed(path, nothing).unwrap_err().to_string();
+    assert!(refused.contains("is 0 m"), "{refused}");
+    // Built-in skins are in meters whatever is said.
+    assert_eq!(load_placed("ball", placing).unwrap().name, "ball");
 }
 
 #[test]

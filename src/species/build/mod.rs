@@ -9,7 +9,8 @@ mod pigment;
 mod structure;
 
 use super::check::{Checked, Item, Value};
-use super::error::{Place, Problems, printable};
+use super::coat::{CoatRecipe, coat_of};
+use super::error::{Place, Problems, SpeciesError, printable};
 use super::model::{HairClass, Species};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -26,12 +27,7 @@ pub(crate) fn build(
     folder: &Path,
     problems: &mut Problems,
 ) -> Option<Species> {
-    let mut reader = Reader {
-        problems,
-        folder,
-        seen: Vec::new(),
-        recipes: BTreeMap::new(),
-    };
+    let mut reader = Reader::new(problems, folder);
     let shared = table(root, "structure");
     let skin = table(root, "skin").and_then(|t| numbers(t, "color"));
     let mut classes = Vec::new();
@@ -55,6 +51,7 @@ pub(crate) fn build(
             }
         }
     }
+    let coat = reader.coat(root);
     if !complete || classes.is_empty() {
         return None;
     }
@@ -67,30 +64,32 @@ pub(crate) fn build(
         synonyms: texts(root, "synonyms"),
         summary: text_of(root, "summary")?,
         classes,
+        coat: coat?,
         skin_color: skin?.try_into().ok()?,
         text: text + &as_comments(&reader.recipes),
     })
 }
 
-/// Recipes as comments, to stand at the end of the file's text: without the marks they are the files
-/// again.
+/// Recipes as comments, to stand at the end of the file's text.
 fn as_comments(recipes: &BTreeMap<String, String>) -> String {
-    let recipe = |(file, text): (&String, &String)| {
-        let lines = text.lines().map(|line| match line {
-            "" => "#\n".to_owned(),
-            _ => format!("# {line}\n"),
-        });
-        format!(
-            "\n# Pattern {}:\n{}",
-            printable(file),
-            lines.collect::<String>()
-        )
-    };
-    recipes.iter().map(recipe).collect()
+    recipes
+        .iter()
+        .map(|(file, text)| as_comment(file, text))
+        .collect()
+}
+
+/// A recipe as a comment: without the marks it is the file again.
+pub(crate) fn as_comment(file: &str, text: &str) -> String {
+    let lines = text.lines().map(|line| match line {
+        "" => "#\n".to_owned(),
+        _ => format!("# {line}\n"),
+    });
+    let lines: String = lines.collect();
+    format!("\n# Pattern {}:\n{lines}", printable(file))
 }
 
 /// Reads checked tables and reports what does not fit together.
-pub(super) struct Reader<'a> {
+pub(crate) struct Reader<'a> {
     pub(super) problems: &'a mut Problems,
     /// Where relative paths begin.
     pub(super) folder: &'a Path,
@@ -100,7 +99,51 @@ pub(super) struct Reader<'a> {
     seen: Vec<Place>,
 }
 
+impl<'a> Reader<'a> {
+    pub(crate) fn new(problems: &'a mut Problems, folder: &'a Path) -> Self {
+        Self {
+            problems,
+            folder,
+            seen: Vec::new(),
+            recipes: BTreeMap::new(),
+        }
+    }
+}
+
 impl Reader<'_> {
+    /// The pattern of the coat, if the file names one; `None` after a problem.
+    fn coat(&mut self, root: &Checked) -> Option<Option<CoatRecipe>> {
+        let Some(item) = root.get("coat") else {
+            return Some(None);
+        };
+        let name = match &item.value {
+            Value::Choice(name) => (*name).to_owned(),
+            Value::Text(file) => file.clone(),
+            _ => return None,
+        };
+        match coat_of(&name, self.folder) {
+            Ok((recipe, text)) => {
+                if name.ends_with(".toml") {
+                    self.recipes.insert(name, text);
+                }
+                return Some(Some(recipe));
+            }
+            Err(SpeciesError::Invalid(errors)) => {
+                for problem in &errors.problems {
+                    let at = errors.locate(&problem.place);
+                    let message = format!("`coat`: {at}: {}", problem.message);
+                    self.problems
+                        .push(&item.place, message, problem.hint.clone());
+                }
+            }
+            Err(error) => {
+                let hint = "the path of a coat is relative to this file";
+                self.conflict(&item.place, format!("`coat`: {error}"), hint);
+            }
+        }
+        None
+    }
+
     fn class(
         &mut self,
         name: &str,

@@ -7,7 +7,12 @@ use crate::species::model::PigmentBand;
 impl Reader<'_> {
     /// The bands of a class, ascending, the last one open.
     pub(super) fn pigment(&mut self, class: &Checked) -> Option<Vec<PigmentBand>> {
-        let bands = tables(class, "pigment")?;
+        self.bands(class, "pigment")
+    }
+
+    /// Bands under any key.
+    pub(crate) fn bands(&mut self, parent: &Checked, key: &str) -> Option<Vec<PigmentBand>> {
+        let bands = tables(parent, key)?;
         let last = bands.len() - 1;
         let mut built = Vec::new();
         let mut from_mm = 0.0;

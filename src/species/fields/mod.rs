@@ -10,6 +10,7 @@ mod structure;
 pub(crate) use cuticle::PATTERNS;
 pub(crate) use medulla::MEDULLAE;
 
+use super::coat::COATS;
 use super::shape::{Field, Kind, Range, Shape};
 use groom::GROOM;
 use structure::{STATION, STRUCTURE};
@@ -49,6 +50,11 @@ pub(crate) static SPECIES: Shape = Shape {
             "Literature by key; `source` refers to the keys.",
         ),
         Field::required("skin", Kind::Table(&SKIN), "The skin under the fur."),
+        Field::optional(
+            "coat",
+            Kind::ChoiceOrFile(COATS),
+            "Pattern of the coat: a built-in one or the path of a recipe; one color when left out.",
+        ),
         Field::optional(
             "structure",
             Kind::Table(&STRUCTURE),
@@ -97,7 +103,7 @@ static SKIN: Shape = Shape {
     )],
 };
 
-static BAND: Shape = Shape {
+pub(crate) static BAND: Shape = Shape {
     name: "band",
     doc: "Pigment of a zone, counted from the tip because the tip grows first.",
     cited: true,

@@ -7,6 +7,7 @@ mod structure;
 pub use mesh::*;
 pub use structure::*;
 
+use super::coat::CoatRecipe;
 use serde::Serialize;
 
 /// One animal.
@@ -30,6 +31,9 @@ pub struct Species {
     pub classes: Vec<HairClass>,
     /// The skin under the fur, linear reflectance 0..1.
     pub skin_color: [f64; 3],
+    /// Which hairs have other pigment than `classes` say; `None` for a coat of one color.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coat: Option<CoatRecipe>,
     /// The species file as read, with overrides listed at its end: provenance for tables and images.
     #[serde(skip)]
     pub text: String,
@@ -68,6 +72,19 @@ pub struct PigmentBand {
     pub eumelanin: f64,
     /// Pheomelanin concentration, same units.
     pub pheomelanin: f64,
+}
+
+impl Species {
+    /// The pigment of a class's hairs in each part of the coat, its own first.
+    pub fn pigments(&self, class: usize) -> Vec<&[PigmentBand]> {
+        let own: &[PigmentBand] = &self.classes[class].pigment;
+        let zones = self.coat.iter().flat_map(|coat| &coat.zones);
+        let of = zones.map(|zone| {
+            let bands = if class == 0 { &zone.guard } else { &zone.under };
+            if bands.is_empty() { own } else { bands }
+        });
+        std::iter::once(own).chain(of).collect()
+    }
 }
 
 /// Radius for which melanin concentrations are stated, micrometers: a human hair.

@@ -1,0 +1,137 @@
+//! Which pigment each hair has: layers of a recipe painted over the skin, and a hair's choice.
+//!
+//! Every point of a net over the skin has a share for each zone. A hair takes one zone, at random with
+//! the shares at its root as probabilities: where two colors meet, hairs of both stand mixed.
+
+mod layers;
+mod net;
+#[cfg(test)]
+mod tests;
+mod turing;
+
+use super::GroomError;
+use super::follicle::Surface;
+use crate::progress::{Cancel, Silent};
+use crate::sampling::hash64;
+use crate::skin::Skin;
+use crate::species::{CoatPattern, CoatRecipe, MAX_ZONES};
+use glam::Vec3;
+use net::Net;
+use turing::POINTS_A_WAVE;
+
+/// Most points of a net; larger skins or finer patterns get a coarser one, which is said.
+const MOST_POINTS: f64 = 250_000.0;
+/// Least points, so that borders are where they should be.
+const LEAST_POINTS: f64 = 6_000.0;
+
+/// Shares of the zones at each point; zone 0 is the species' own.
+type Shares = [f32; MAX_ZONES + 1];
+
+/// A painted skin.
+pub(super) struct Coat {
+    net: Net,
+    shares: Vec<Shares>,
+    /// Factor on hair length of each zone.
+    hair: Vec<f32>,
+    seed: u64,
+    /// What could not be painted, one sentence each.
+    pub(super) warnings: Vec<String>,
+}
+
+impl Coat {
+    /// Paints a skin.
+    ///
+    /// * `seed`: of everything random.
+    ///
+    /// # Errors
+    /// A skin without area, or canceled.
+    pub(super) fn paint(
+        skin: &Skin,
+        recipe: &CoatRecipe,
+        seed: u64,
+        cancel: &Cancel,
+    ) -> Result<Self, GroomError> {
+        let surface = Surface::even(skin)?;
+        let scale = scale_of(skin, recipe);
+        let mut warnings = Vec::new();
+        let (count, spacing) = points(surface.weighted_area(), recipe, scale, &mut warnings);
+        let seed = hash64(seed ^ 0x636f_6174);
+        let follicles = surface.scatter(seed, count, &Silent, cancel)?;
+        let net = Net::new(&surface, &follicles, spacing);
+        let painter = layers::Painter::new(skin, &surface, &follicles, &net, scale, seed);
+        let shares = painter.paint(recipe, &mut warnings, cancel)?;
+        let zones = recipe.zones.iter().map(|z| z.hair);
+        Ok(Self {
+            shares,
+            hair: std::iter::once(1.0)
+                .chain(zones)
+                .map(|h| (h * recipe.hair) as f32)
+                .collect(),
+            net,
+            seed,
+            warnings,
+        })
+    }
+
+    /// The zone of a hair, and the factor on its length.
+    ///
+    /// * `id`: of the strand, the same for any density.
+    pub(super) fn choose(&self, id: u32, position: Vec3, normal: Vec3) -> (u8, f32) {
+        let mut shares = [0.0; MAX_ZONES + 1];
+        for (point, weight) in self.net.weights(position, normal) {
+            for (sum, share) in shares.iter_mut().zip(&self.shares[point as usize]) {
+                *sum += weight * share;
+            }
+        }
+        let total: f32 = shares.iter().sum();
+        let luck = (hash64(self.seed ^ hash64(u64::from(id) + 1)) >> 40) as f32;
+        let mut left = luck / (1u64 << 24) as f32 * total;
+        for (zone, &share) in shares.iter().enumerate() {
+            if left < share {
+                return (zone as u8, self.hair[zone]);
+            }
+            left -= share;
+        }
+        (0, self.hair[0])
+    }
+}
+
+/// Meters of the skin in a millimeter of the recipe.
+fn scale_of(skin: &Skin, recipe: &CoatRecipe) -> f32 {
+    match skin.body {
+        Some(length) if recipe.body_mm > 0.0 => length / recipe.body_mm as f32,
+        _ => 1e-3,
+    }
+}
+
+/// How many points a recipe needs on an area, and their distance.
+fn points(area: f64, recipe: &CoatRecipe, scale: f32, warnings: &mut Vec<String>) -> (usize, f32) {
+    // Points in a hexagonal packing have sqrt(3)/2 of their distance squared each.
+    let spacing_of = |count: f64| (area / count / 0.866).sqrt();
+    let finest = recipe
+        .layers
+        .iter()
+        .filter_map(|layer| match &layer.pattern {
+            CoatPattern::Turing(turing) => Some(turing.wavelength_mm * turing.fine),
+            CoatPattern::Rosettes { spots, .. } => {
+                Some(layers::FRAGMENT * spots.wavelength_mm * spots.fine)
+            }
+            CoatPattern::Patches { size_mm, .. } => Some(0.5 * size_mm),
+            CoatPattern::Plain => None,
+            // A picture has any detail: as fine as the net goes.
+            CoatPattern::Map { .. } => Some(0.0),
+        });
+    let finest = finest.fold(f64::INFINITY, f64::min);
+    let wanted = finest * f64::from(scale) / f64::from(POINTS_A_WAVE);
+    let count = (area / (0.866 * wanted * wanted)).max(LEAST_POINTS);
+    if count > MOST_POINTS && finest > 0.0 {
+        let least = spacing_of(MOST_POINTS) * f64::from(POINTS_A_WAVE);
+        warnings.push(format!(
+            "the finest pattern of the coat, {:.3} m on this skin, is coarser than asked for: {least:.3} m \
+             (a skin of {area:.2} m2 has {MOST_POINTS} points)",
+            finest * f64::from(scale),
+        ));
+    }
+    let count = count.min(MOST_POINTS);
+    (count as usize, spacing_of(count) as f32)
+}
