@@ -62,6 +62,7 @@ failures!(
     crate::bake::SumsError,
     crate::groom::GroomError,
     crate::io::FileError,
+    crate::render::FilmSumsError,
     crate::render::RenderError,
     crate::scene::EnvironmentError,
     crate::scene::SceneError,

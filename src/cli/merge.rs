@@ -1,10 +1,12 @@
-//! `vair merge`: the shards of a bake put together, to the bit what one bake would have given.
+//! `vair merge`: the shards of a bake or of a picture put together, to the bit what one run would have given.
 
 use super::bake::{report, write_table};
+use super::render::output::{self, Format, Look, Origin};
 use super::{Console, Failure};
 use crate::bake::{Sums, SumsError};
 use crate::blame::Blame;
 use crate::io::check_writable;
+use crate::render::{FilmSums, FilmSumsError};
 use std::path::PathBuf;
 
 /// Arguments of `vair merge`.
@@ -13,21 +15,31 @@ use std::path::PathBuf;
   vair bake human --photons 1e10 --shard 1/3 -o human-1.safetensors     # on three machines
   vair merge human-1.safetensors human-2.safetensors human-3.safetensors -o human.exr
   vair merge human-1.safetensors human-2.safetensors -o human-12.safetensors
+  vair render red-fox --samples 0..64 -o fox-1.safetensors              # the same for a picture
+  vair render red-fox --samples 64..128 -o fox-2.safetensors
+  vair merge fox-1.safetensors fox-2.safetensors -o fox.exr
 
 A table needs all photons of the bake; a .safetensors file takes what there is and can be merged
 further. The order of the files does not matter. Files of different bakes, with photons in common or
 with a gap between them are refused by name.")]
 pub(super) struct Args {
-    /// Files that `vair bake --shard` or `vair merge` wrote.
+    /// Files that `vair bake --shard`, `vair render --samples` or `vair merge` wrote.
     #[arg(required = true)]
     shards: Vec<PathBuf>,
-    /// Where the result goes: a table (.exr) or the sums of a part (.safetensors).
+    /// Where the result goes: a table or a picture (.exr), the sums of a part (.safetensors), or a picture
+    /// (.png).
     #[arg(long, short)]
     output: PathBuf,
+    #[command(flatten)]
+    look: Look,
 }
 
 /// Runs the command.
 pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
+    // Files of a picture say so; any other is taken for a bake's, whose reader knows what may be wrong.
+    if let Some(Ok(first)) = args.shards.first().map(|path| FilmSums::read(path)) {
+        return merge_pictures(args, first);
+    }
     let extension = args.output.extension().and_then(|e| e.to_str());
     let to_sums = match extension {
         Some("safetensors") => true,
@@ -59,4 +71,21 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     write_table(&table, sums.dye(), &args.output)?;
     report(table.tables(), console);
     Ok(())
+}
+
+fn merge_pictures(args: &Args, first: FilmSums) -> Result<(), Failure> {
+    let format = output::format_of(&args.output)?;
+    check_writable(&args.output)?;
+    let mut parts = vec![first];
+    for path in &args.shards[1..] {
+        parts.push(FilmSums::read(path)?);
+    }
+    let sums = FilmSums::merge(parts)?;
+    let origin = match Origin::of(&sums) {
+        Some(origin) => origin,
+        None if format == Format::Sums => return Ok(sums.write(&args.output)?),
+        None => return Err(FilmSumsError::Foreign { what: "the scene" }.into()),
+    };
+    let outputs = std::slice::from_ref(&args.output);
+    output::write(outputs, &args.look, &sums.film(), &origin, || sums.clone())
 }

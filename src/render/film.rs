@@ -1,15 +1,16 @@
-//! What a rendering gathers: sums per pixel, in double precision and sample order.
+//! What a rendering gathers: exact sums per pixel.
 
 use super::path::Sample;
 use crate::color::{Rgb, luminance};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// Strand id of pixels that show no strand.
 pub const NO_STRAND: u32 = u32::MAX;
 
 /// A rectangle of the full frame, pixels from the upper left corner.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Crop {
     /// First column.
     pub x: u32,
@@ -21,37 +22,39 @@ pub struct Crop {
     pub height: u32,
 }
 
-/// Sums of one pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Sums of one pixel, in integers: samples may be added in any order and by any number of programs, to
+/// the bit the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct PixelSums {
     samples: u32,
-    radiance: DVec3,
-    square: f64,
-    alpha: f64,
-    /// Samples that met strand or skin; the sums below are over these.
+    /// Samples that met strand or skin; the sums over first hits are over these.
     hits: u32,
-    depth: f64,
-    albedo: Vec3,
-    normal: Vec3,
-    tangent: Vec3,
+    /// Strand of the first sample that met one, and its root's texture coordinates (bits).
     strand: u32,
-    root_uv: Vec2,
+    root_uv: [u32; 2],
+    /// Of squared luminance, in units of 2^-40.
+    square: u128,
+    /// Radiance (3), depth, albedo (3), normal (3), tangent (3): in units of 2^-28, depth of 2^-10.
+    sums: [i64; SUMS],
 }
+
+const SUMS: usize = 13;
+const UNIT: f64 = (1u64 << 28) as f64;
+const DEPTH_UNIT: f64 = (1u64 << 10) as f64;
+const SQUARE_UNIT: f64 = (1u64 << 40) as f64;
+
+/// 64-bit words of a pixel's sums in a file.
+pub(super) const WORDS: usize = SUMS + 5;
 
 impl Default for PixelSums {
     fn default() -> Self {
         Self {
             samples: 0,
-            radiance: DVec3::ZERO,
-            square: 0.0,
-            alpha: 0.0,
             hits: 0,
-            depth: 0.0,
-            albedo: Vec3::ZERO,
-            normal: Vec3::ZERO,
-            tangent: Vec3::ZERO,
             strand: NO_STRAND,
-            root_uv: Vec2::ZERO,
+            root_uv: [0; 2],
+            square: 0,
+            sums: [0; SUMS],
         }
     }
 }
@@ -63,24 +66,89 @@ impl PixelSums {
             return false;
         }
         self.samples += 1;
-        self.radiance += sample.radiance.as_dvec3();
-        self.square += f64::from(luminance(sample.radiance)).powi(2);
-        self.alpha += f64::from(sample.alpha);
+        self.square = self.square.saturating_add(
+            (f64::from(luminance(sample.radiance)).powi(2) * SQUARE_UNIT).round() as u128,
+        );
+        self.add_at(0, sample.radiance);
         if let Some(first) = &sample.first {
             self.hits += 1;
-            self.depth += f64::from(first.depth);
-            self.albedo += first.albedo;
-            self.normal += first.normal;
-            self.tangent += first.tangent;
+            let depth = (f64::from(first.depth) * DEPTH_UNIT).round() as i64;
+            self.sums[3] = self.sums[3].saturating_add(depth);
+            self.add_at(4, first.albedo);
+            self.add_at(7, first.normal);
+            self.add_at(10, first.tangent);
             // Ids cannot be averaged: the first strand seen keeps the pixel.
             if self.strand == NO_STRAND
                 && let Some(strand) = first.strand
             {
                 self.strand = strand;
-                self.root_uv = first.root_uv;
+                self.root_uv = first.root_uv.to_array().map(f32::to_bits);
             }
         }
         true
+    }
+
+    fn add_at(&mut self, at: usize, v: Vec3) {
+        for (sum, x) in self.sums[at..at + 3].iter_mut().zip(v.to_array()) {
+            // Numbers too large end at the greatest there is.
+            *sum = sum.saturating_add((f64::from(x) * UNIT).round() as i64);
+        }
+    }
+
+    /// Adds the sums of samples that come later.
+    pub(super) fn append(&mut self, later: &Self) {
+        self.samples += later.samples;
+        self.hits += later.hits;
+        self.square = self.square.saturating_add(later.square);
+        for (sum, x) in self.sums.iter_mut().zip(later.sums) {
+            *sum = sum.saturating_add(x);
+        }
+        if self.strand == NO_STRAND {
+            (self.strand, self.root_uv) = (later.strand, later.root_uv);
+        }
+    }
+
+    /// As they stand in a file.
+    pub(super) fn words(&self) -> [u64; WORDS] {
+        let pair = |a: u32, b: u32| u64::from(a) | u64::from(b) << 32;
+        let mut words = [0; WORDS];
+        words[0] = pair(self.samples, self.hits);
+        words[1] = pair(self.strand, 0);
+        words[2] = pair(self.root_uv[0], self.root_uv[1]);
+        (words[3], words[4]) = (self.square as u64, (self.square >> 64) as u64);
+        for (word, sum) in words[5..].iter_mut().zip(self.sums) {
+            *word = sum as u64;
+        }
+        words
+    }
+
+    /// From a file.
+    pub(super) fn from_words(words: &[u64; WORDS]) -> Self {
+        let pair = |word: u64| [word as u32, (word >> 32) as u32];
+        let [samples, hits] = pair(words[0]);
+        Self {
+            samples,
+            hits,
+            strand: words[1] as u32,
+            root_uv: pair(words[2]),
+            square: u128::from(words[3]) | u128::from(words[4]) << 64,
+            sums: std::array::from_fn(|i| words[5 + i] as i64),
+        }
+    }
+
+    fn mean_at(&self, at: usize, count: u32) -> Vec3 {
+        let scale = 1.0 / (UNIT * f64::from(count.max(1)));
+        Vec3::from_array(std::array::from_fn(|i| {
+            (self.sums[at + i] as f64 * scale) as f32
+        }))
+    }
+
+    /// Mean luminance and the variance of that mean.
+    pub(super) fn luminance(&self) -> (f64, f64) {
+        let n = f64::from(self.samples.max(1));
+        let mean = f64::from(luminance(self.mean_at(0, self.samples)));
+        let spread = (self.square as f64 / SQUARE_UNIT / n - mean * mean).max(0.0);
+        (mean, spread / (n - 1.0).max(1.0))
     }
 }
 
@@ -111,24 +179,21 @@ pub struct Pixel {
 
 impl From<&PixelSums> for Pixel {
     fn from(sums: &PixelSums) -> Self {
-        let n = f64::from(sums.samples.max(1));
-        let mean = sums.radiance / n;
-        let spread = (sums.square / n - f64::from(luminance(mean.as_vec3())).powi(2)).max(0.0);
-        let hits = sums.hits.max(1) as f32;
+        let hits = sums.hits;
         Self {
-            radiance: mean.as_vec3(),
-            alpha: (sums.alpha / n) as f32,
-            variance: (spread / (n - 1.0).max(1.0)) as f32,
+            radiance: sums.mean_at(0, sums.samples),
+            alpha: (f64::from(hits) / f64::from(sums.samples.max(1))) as f32,
+            variance: sums.luminance().1 as f32,
             samples: sums.samples,
-            depth: match sums.hits {
+            depth: match hits {
                 0 => f32::INFINITY,
-                hits => (sums.depth / f64::from(hits)) as f32,
+                _ => (sums.sums[3] as f64 / DEPTH_UNIT / f64::from(hits)) as f32,
             },
-            albedo: sums.albedo / hits,
-            normal: sums.normal / hits,
-            tangent: sums.tangent / hits,
+            albedo: sums.mean_at(4, hits),
+            normal: sums.mean_at(7, hits),
+            tangent: sums.mean_at(10, hits),
             strand: sums.strand,
-            root_uv: sums.root_uv,
+            root_uv: Vec2::from_array(sums.root_uv.map(f32::from_bits)),
         }
     }
 }

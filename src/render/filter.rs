@@ -2,11 +2,13 @@
 //!
 //! Samples are drawn by the filter itself, so that each counts the same and pixels share none.
 
+use serde::{Deserialize, Serialize};
+
 /// Standard deviation of the Gaussian, pixels. 0.3 shows stairs on single hairs, 0.6 blurs them.
 pub const GAUSSIAN_SIGMA: f32 = 0.42;
 
 /// A pixel filter.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Filter {
     /// A Gaussian of [`GAUSSIAN_SIGMA`].
     #[default]

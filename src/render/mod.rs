@@ -4,23 +4,22 @@ mod draws;
 mod film;
 mod filter;
 mod path;
+mod rendering;
 mod resample;
 mod scatter;
+mod sums;
 
 pub use film::{Crop, Film, NO_STRAND, Pixel, Report};
 pub use filter::{Filter, GAUSSIAN_SIGMA};
+pub use rendering::Rendering;
+pub use sums::{FilmSums, FilmSumsError};
 
 use crate::blame::Blame;
 use crate::progress::{Cancel, Progress};
 use crate::scene::Scene;
-use film::PixelSums;
 use path::Integrator;
-use rayon::prelude::*;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
-
-/// Side of a tile, pixels. Any size gives the same picture.
-const TILE: u32 = 16;
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
 
 /// Largest side of a picture, pixels.
 pub const SIDE_LIMIT: u32 = 32_768;
@@ -29,7 +28,7 @@ pub const SIDE_LIMIT: u32 = 32_768;
 pub const SPP_LIMIT: u32 = 1 << 24;
 
 /// How directions are drawn. All converge to the same picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sampler {
     /// Direct light by quasi-random sampling importance resampling of scattering times environment;
     /// the path goes on by the scattering model, its escapes weighted in.
@@ -53,8 +52,13 @@ pub struct RenderJob {
     pub resolution: [u32; 2],
     /// Part of the frame to render; `None` for all.
     pub crop: Option<Crop>,
-    /// Samples a pixel, 1..=[`SPP_LIMIT`].
+    /// Samples a pixel, 1..=[`SPP_LIMIT`]; the most if there is a target.
     pub spp: u32,
+    /// Index of the first sample: ranges of samples make one picture when they are put together.
+    pub first: u32,
+    /// Relative error at which a tile has samples enough: root mean square over its pixels of the standard
+    /// error of luminance, over its mean luminance (but for the darkest tiles).
+    pub target_error: Option<f64>,
     /// Another seed gives another noise.
     pub seed: u64,
     /// How directions are drawn.
@@ -71,6 +75,8 @@ impl Default for RenderJob {
             resolution: [960, 720],
             crop: None,
             spp: 64,
+            first: 0,
+            target_error: None,
             seed: 0,
             sampler: Sampler::Qsir,
             filter: Filter::Gaussian,
@@ -102,6 +108,12 @@ pub enum RenderError {
         /// Pixels down.
         height: u32,
     },
+    /// A target that no picture can meet.
+    #[error("a relative error of {error} cannot be aimed at: it must be above 0")]
+    Target {
+        /// What was asked for.
+        error: f64,
+    },
     /// No samples, or too many.
     #[error("{spp} samples a pixel cannot be taken: 1 to {SPP_LIMIT} are possible")]
     Spp {
@@ -117,23 +129,6 @@ impl RenderError {
     }
 }
 
-/// The pixels of one tile; only one thread touches it at a time.
-struct Tile {
-    x: u32,
-    y: u32,
-    width: u32,
-    sums: Vec<PixelSums>,
-}
-
-/// Counts of one tile in one pass.
-#[derive(Clone, Copy, Default)]
-struct Counts {
-    samples: u64,
-    rays: u64,
-    dropped: u64,
-    capped: u64,
-}
-
 impl RenderJob {
     /// Checks the numbers and gives the pixels to render.
     pub fn check(&self) -> Result<Crop, RenderError> {
@@ -141,8 +136,14 @@ impl RenderJob {
         if !(1..=SIDE_LIMIT).contains(&width) || !(1..=SIDE_LIMIT).contains(&height) {
             return Err(RenderError::Resolution { width, height });
         }
-        if !(1..=SPP_LIMIT).contains(&self.spp) {
-            return Err(RenderError::Spp { spp: self.spp });
+        if !(1..=SPP_LIMIT).contains(&self.spp) || self.first > SPP_LIMIT - self.spp {
+            let spp = self.spp.saturating_add(self.first);
+            return Err(RenderError::Spp { spp });
+        }
+        if let Some(error) = self.target_error
+            && !(error > 0.0 && error < f64::INFINITY)
+        {
+            return Err(RenderError::Target { error });
         }
         let crop = self.crop.unwrap_or(Crop {
             x: 0,
@@ -164,11 +165,10 @@ impl RenderJob {
         }
     }
 
-    /// Renders.
+    /// Renders. See [`Rendering`] for pictures that are saved on the way.
     ///
-    /// * Passes of 1, 1, 2, 4, 8, 16, 16, ... samples a pixel: stopped by `cancel` or the time limit,
-    ///   the film holds what there is. Only a cancel within the first pass leaves pixels without a
-    ///   sample; then `report.passes` is 0.
+    /// * Stopped by `cancel` or the time limit, the film holds what there is. Only a cancel within the first
+    ///   pass leaves pixels without a sample; then `report.passes` is 0.
     /// * The same job on the same scene gives the same bits on any number of threads, unless it is
     ///   stopped; a crop gives the bits of the full frame.
     pub fn run(
@@ -177,7 +177,9 @@ impl RenderJob {
         progress: &dyn Progress,
         cancel: &Cancel,
     ) -> Result<Film, RenderError> {
-        self.run_with(self.integrator(scene), progress, cancel)
+        let mut rendering = Rendering::new(self, scene)?;
+        rendering.run(None, progress, cancel);
+        Ok(rendering.film())
     }
 
     fn integrator<'a>(&self, scene: &'a Scene) -> Integrator<'a> {
@@ -193,121 +195,6 @@ impl RenderJob {
             bare_target: false,
         }
     }
-
-    fn run_with(
-        &self,
-        integrator: Integrator<'_>,
-        progress: &dyn Progress,
-        cancel: &Cancel,
-    ) -> Result<Film, RenderError> {
-        let crop = self.check()?;
-        let started = Instant::now();
-        let mut tiles = tiles_of(&crop);
-        let pixels = u64::from(crop.width) * u64::from(crop.height);
-        progress.begin("render", pixels * u64::from(self.spp), "samples");
-        let mut report = Report::default();
-        let mut taken = 0;
-        while taken < self.spp {
-            let size = pass_size(taken).min(self.spp - taken);
-            let late = || {
-                let over = self.time_limit.is_some_and(|l| started.elapsed() >= l);
-                cancel.is_cancelled() || (taken > 0 && over)
-            };
-            if late() {
-                break;
-            }
-            let stopped = AtomicU64::new(0);
-            let counts: Vec<Counts> = tiles
-                .par_iter_mut()
-                .map(|tile| {
-                    if late() {
-                        stopped.fetch_add(1, Ordering::Relaxed);
-                        return Counts::default();
-                    }
-                    let counts = trace_tile(&integrator, tile, taken..taken + size);
-                    progress.advance(counts.samples);
-                    counts
-                })
-                .collect();
-            for c in &counts {
-                report.samples += c.samples;
-                report.rays += c.rays;
-                report.dropped += c.dropped;
-                report.capped += c.capped;
-            }
-            if stopped.into_inner() > 0 {
-                break;
-            }
-            taken += size;
-            report.passes += 1;
-            progress.note(&format!("{taken} spp"));
-        }
-        progress.finish();
-        report.complete = taken == self.spp;
-        report.elapsed = started.elapsed();
-        Ok(Film {
-            crop,
-            resolution: self.resolution,
-            pixels: assemble(&tiles, &crop),
-            report,
-        })
-    }
-}
-
-/// Samples of the pass after `taken`: doubling, so that every pass ends on a whole net of points.
-fn pass_size(taken: u32) -> u32 {
-    taken.clamp(1, 16)
-}
-
-fn tiles_of(crop: &Crop) -> Vec<Tile> {
-    let mut tiles = Vec::new();
-    for y in (0..crop.height).step_by(TILE as usize) {
-        for x in (0..crop.width).step_by(TILE as usize) {
-            let (width, height) = (TILE.min(crop.width - x), TILE.min(crop.height - y));
-            tiles.push(Tile {
-                x: crop.x + x,
-                y: crop.y + y,
-                width,
-                sums: vec![PixelSums::default(); (width * height) as usize],
-            });
-        }
-    }
-    tiles
-}
-
-fn trace_tile(
-    integrator: &Integrator<'_>,
-    tile: &mut Tile,
-    indices: std::ops::Range<u32>,
-) -> Counts {
-    let mut counts = Counts::default();
-    for (i, sums) in tile.sums.iter_mut().enumerate() {
-        let (x, y) = (
-            tile.x + i as u32 % tile.width,
-            tile.y + i as u32 / tile.width,
-        );
-        for index in indices.clone() {
-            let sample = integrator.sample(x, y, index);
-            counts.samples += 1;
-            counts.rays += u64::from(sample.rays);
-            counts.capped += u64::from(sample.capped);
-            counts.dropped += u64::from(!sums.add(&sample));
-        }
-    }
-    counts
-}
-
-fn assemble(tiles: &[Tile], crop: &Crop) -> Vec<Pixel> {
-    let blank = Pixel::from(&PixelSums::default());
-    let mut pixels = vec![blank; crop.width as usize * crop.height as usize];
-    for tile in tiles {
-        for (i, sums) in tile.sums.iter().enumerate() {
-            let x = tile.x - crop.x + i as u32 % tile.width;
-            let y = tile.y - crop.y + i as u32 / tile.width;
-            pixels[y as usize * crop.width as usize + x as usize] = Pixel::from(sums);
-        }
-    }
-    pixels
 }
 
 #[cfg(test)]

@@ -162,7 +162,8 @@ impl Integrator<'_> {
         {
             let environment = &self.scene.environment;
             let target = self.target(depth);
-            return resample(scatter, environment, &plan, &target, draws, depth);
+            let kept = resample(scatter, environment, &plan, &target, draws, depth);
+            return kept.map(|(direction, _)| direction);
         }
         let u = draws.point(depth, Purpose::Continue);
         scatter.sample([u[0], u[1], u[2]])
@@ -184,7 +185,7 @@ impl Integrator<'_> {
             Sampler::Qsir => {
                 let plan = Plan::direct(depth);
                 match resample(scatter, environment, &plan, &Target::DIRECT, draws, depth) {
-                    Some(kept) => (kept.dir, kept.weight * environment.eval(kept.dir).0),
+                    Some((kept, light)) => (kept.dir, kept.weight * light),
                     None => return Rgb::ZERO,
                 }
             }

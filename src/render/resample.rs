@@ -20,7 +20,7 @@
 
 use super::draws::{Draws, Purpose};
 use super::scatter::{Direction, Scatter};
-use crate::color::luminance;
+use crate::color::{Rgb, luminance};
 use crate::scene::Environment;
 
 /// Scattering that rays which hit other strands are expected to meet there.
@@ -30,8 +30,10 @@ const TYPICAL_ALBEDO: f32 = 0.5;
 /// how many of the former the continuing ray stands for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
-    /// Candidates of each kind.
-    half: u32,
+    /// Candidates from the scattering model, 0 or a power of two.
+    scattering: u32,
+    /// Candidates from the environment, a power of two.
+    lights: u32,
     /// Samples of the scattering model that the continuing ray counts as; 0 if there is none.
     continuing: f32,
 }
@@ -47,7 +49,8 @@ impl Plan {
             _ => 1,
         };
         Self {
-            half,
+            scattering: half,
+            lights: half,
             continuing: 2.0 * half as f32,
         }
     }
@@ -62,15 +65,15 @@ impl Plan {
             _ => return None,
         };
         Some(Self {
-            half,
+            scattering: half,
+            lights: half,
             continuing: 0.0,
         })
     }
 
     /// Sum over techniques of count times density.
     fn density(&self, scatter_pdf: f32, light_pdf: f32) -> f32 {
-        let half = self.half as f32;
-        half * (scatter_pdf + light_pdf) + self.continuing * scatter_pdf
+        (self.scattering as f32 + self.continuing) * scatter_pdf + self.lights as f32 * light_pdf
     }
 
     /// The share of direct light that an escaping continuing ray brings.
@@ -113,7 +116,8 @@ impl Target {
     }
 }
 
-/// Draws one direction; its weight is scattering density times W.
+/// Draws one direction; its weight is scattering density times W. Beside it the environment's light from
+/// there.
 pub(super) fn resample(
     scatter: &Scatter<'_>,
     environment: &Environment,
@@ -121,22 +125,22 @@ pub(super) fn resample(
     target: &Target,
     draws: &Draws,
     bounce: u32,
-) -> Option<Direction> {
+) -> Option<(Direction, Rgb)> {
     let scattering = draws.net(bounce, Purpose::Scatter);
     let lights = draws.net(bounce, Purpose::Light);
     let mut choice = draws.point(bounce, Purpose::Choice)[0];
     let (mut sum, mut kept) = (0.0f32, None);
-    for j in 0..2 * plan.half {
-        // Each half is an aligned run of its own net.
+    for j in 0..plan.scattering + plan.lights {
+        // Each kind is an aligned run of its own net.
         // What the sampling of one side knows already is not looked up again.
-        let candidate = if j < plan.half {
-            let u = scattering.point(draws.run(plan.half) + j);
+        let candidate = if j < plan.scattering {
+            let u = scattering.point(draws.run(plan.scattering) + j);
             scatter.sample([u[0], u[1], u[2]]).map(|s| {
                 let (light, light_pdf) = environment.eval(s.dir);
                 (s.dir, s.weight * s.pdf, s.pdf, light, light_pdf)
             })
         } else {
-            let u = lights.point(draws.run(plan.half) + j - plan.half);
+            let u = lights.point(draws.run(plan.lights) + j - plan.scattering);
             environment.sample([u[0], u[1]]).map(|s| {
                 let (density, scatter_pdf) = scatter.eval(s.dir);
                 (s.dir, density, scatter_pdf, s.radiance, s.pdf)
@@ -156,15 +160,16 @@ pub(super) fn resample(
         let share = weight / sum;
         if choice < share {
             choice /= share;
-            kept = Some((dir, density, value));
+            kept = Some((dir, density, value, light));
         } else {
             choice = (choice - share) / (1.0 - share);
         }
     }
-    let (dir, density, value) = kept?;
-    Some(Direction {
+    let (dir, density, value, light) = kept?;
+    let direction = Direction {
         dir,
         weight: density * (sum / value),
         pdf: value / sum,
-    })
+    };
+    Some((direction, light))
 }

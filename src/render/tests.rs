@@ -206,9 +206,9 @@ fn samplers_agree_and_the_bare_product_does_not() {
             };
             let mut integrator = job.integrator(&s);
             integrator.bare_target = true;
-            let film = job
-                .run_with(integrator, &Silent, &Cancel::default())
-                .unwrap();
+            let mut rendering = Rendering::with(&job, integrator).unwrap();
+            rendering.run(None, &Silent, &Cancel::default());
+            let film = rendering.film();
             let (biased, noise) = mean_of(&film);
             let z = (biased - mean) / error.hypot(noise);
             assert!(

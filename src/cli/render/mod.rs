@@ -1,7 +1,8 @@
 //! `vair render`: a species to a still. Bakes what the cache does not hold, grows the fur, traces.
 
+mod checkpoint;
 mod material;
-mod output;
+pub(super) mod output;
 mod parse;
 mod stats;
 
@@ -11,11 +12,13 @@ use crate::bsdf::ChiangParameters;
 use crate::export::mitsuba::MitsubaScene;
 use crate::groom::{self, GroomSettings};
 use crate::io::check_writable;
-use crate::render::{Crop, Film, Filter, RenderJob, Sampler};
+use crate::render::{Crop, Film, Filter, RenderJob, Rendering, Sampler};
 use crate::scene::{Backdrop, Environment, Scene, SceneParts, Sun, View, load_environment};
 use crate::skin::{self, Placing, Skin, Up};
 use crate::species;
 use glam::Vec3;
+use output::Origin;
+use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -58,9 +61,24 @@ pub(super) struct Args {
     /// Width and height of the picture.
     #[arg(long, value_parser = parse::size, default_value = "640x480")]
     res: [u32; 2],
-    /// Samples a pixel.
-    #[arg(long, default_value_t = 32)]
-    spp: u32,
+    /// Samples a pixel; 32 if not given.
+    #[arg(long)]
+    spp: Option<u32>,
+    /// Renders only these samples of every pixel, from the first to one before the last: `0..64`. Ranges
+    /// written to .safetensors files are put together by `vair merge`, to the bit what one run gives.
+    #[arg(long, value_parser = parse::samples, value_name = "A..B", conflicts_with_all = ["spp", "target_error"])]
+    samples: Option<[u32; 2]>,
+    /// Ends tile by tile where the noise is below this many per cent of the tile's light; `--spp` is the
+    /// most samples then, and 4096 if it is not given.
+    #[arg(long, value_name = "PERCENT", value_parser = parse::percent)]
+    target_error: Option<f64>,
+    /// Saves all samples to this file now and then and when stopped, and goes on from it if it is there. It
+    /// goes when the picture is done.
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
+    /// Seconds between two saves of the checkpoint.
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = parse::seconds)]
+    checkpoint_every: f64,
     /// Renders only a part of the frame, with the same pixels: x,y,width,height.
     #[arg(long, value_parser = parse::crop)]
     crop: Option<Crop>,
@@ -119,15 +137,8 @@ pub(super) struct Args {
     /// Leaves out the floor.
     #[arg(long)]
     no_ground: bool,
-    /// Exposure of the PNG, in stops.
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
-    exposure: f32,
-    /// Cut the PNG at white instead of rolling bright parts off.
-    #[arg(long)]
-    plain: bool,
-    /// Write the PNG as it was sampled. By default noise is taken out of it, never out of the EXR.
-    #[arg(long)]
-    no_denoise: bool,
+    #[command(flatten)]
+    look: output::Look,
     /// Seed of fiber, fur and picture.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -146,7 +157,7 @@ pub(super) struct Args {
     /// Bake even if the cache holds the tables, and do not store them there.
     #[arg(long)]
     no_cache: bool,
-    /// Where the picture goes: .png or .exr. May repeat.
+    /// Where the picture goes: .png or .exr, or .safetensors for its sums. May repeat.
     #[arg(long, short, required = true)]
     output: Vec<PathBuf>,
 }
@@ -298,7 +309,10 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         stages.end("export");
         console.say(format!("Mitsuba scene in {}", folder.display()));
     }
-    let film = job.run(&scene, console, cancel)?;
+    let of = identity(args, &species, &scene);
+    let mut rendering = Rendering::new(&job, &scene)?;
+    checkpoint::run(args, &mut rendering, &of, console)?;
+    let film = rendering.film();
     stages.end("render");
     report(&film, console);
     if film.report.passes == 0 {
@@ -307,10 +321,15 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
             "stopped before every pixel had a sample; nothing was written",
         ));
     }
-    output::write(args, &species, &film)?;
+    output::write(&args.output, &args.look, &film, &of, || {
+        rendering.sums(&of.text())
+    })?;
     stages.end("write");
     if let Some(path) = &args.stats {
         stages.write(path, &scene, &film)?;
+    }
+    if film.report.complete {
+        checkpoint::remove(args)?;
     }
     if cancel.is_cancelled() {
         let message = format!(
@@ -330,10 +349,20 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
         }
         limit => limit.map(Duration::from_secs_f64),
     };
+    let [first, end] = args.samples.unwrap_or_else(|| {
+        let most = if args.target_error.is_some() {
+            4096
+        } else {
+            32
+        };
+        [0, args.spp.unwrap_or(most)]
+    });
     Ok(RenderJob {
         resolution: args.res,
         crop: args.crop,
-        spp: args.spp,
+        spp: end - first,
+        first,
+        target_error: args.target_error,
         seed: args.picture_seed.unwrap_or(args.seed),
         sampler: match args.sampler {
             SamplerArg::Qsir => Sampler::Qsir,
@@ -349,6 +378,57 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
         },
         time_limit,
     })
+}
+
+/// All that decides the samples besides the job.
+fn identity(args: &Args, species: &species::Species, scene: &Scene) -> Origin {
+    let mut settings = format!(
+        "skin {} env {} env-turn {} res {}x{} sampler {:?} strands {:?} bake-photons {}",
+        args.skin,
+        args.env,
+        args.env_turn,
+        args.res[0],
+        args.res[1],
+        args.sampler,
+        args.strands,
+        args.bake_photons
+    );
+    if args.azimuths != 1 {
+        settings += &format!(" azimuths {}", args.azimuths);
+    }
+    if args.model != ModelArg::Table {
+        settings += &format!(" model {:?} {:?}", args.model, args.chiang);
+    }
+    settings += &format!(" tables {:?} ground {}", args.table, !args.no_ground);
+    Origin {
+        species: species.id.clone(),
+        species_text: species.text.clone(),
+        settings,
+        seed: args.seed,
+        view: format!("{:?}", scene.view),
+        geometry: fingerprint(scene),
+    }
+}
+
+/// Hash of everything that rays can meet.
+fn fingerprint(scene: &Scene) -> String {
+    let mut hasher = Sha256::new();
+    for joint in scene.strands.joints() {
+        for x in joint.to_array() {
+            hasher.update(x.to_le_bytes());
+        }
+    }
+    for corner in scene
+        .surface
+        .iter()
+        .flat_map(|s| s.corners().iter().flatten())
+    {
+        for x in corner.to_array() {
+            hasher.update(x.to_le_bytes());
+        }
+    }
+    let hash = hasher.finalize();
+    hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn environment(args: &Args, view: &View) -> Result<Environment, Failure> {

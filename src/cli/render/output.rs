@@ -1,78 +1,107 @@
 //! Pictures of a film, by the names of their files.
 
-use super::Args;
 use crate::blame::Blame;
 use crate::cli::Failure;
 use crate::image::{self, Curve, ViewTransform};
-use crate::render::Film;
-use crate::species::Species;
+use crate::render::{Film, FilmSums};
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Format {
-    Png,
-    Exr,
+/// How a PNG shows the picture.
+#[derive(Debug, clap::Args)]
+pub(in crate::cli) struct Look {
+    /// Exposure of the PNG, in stops.
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    exposure: f32,
+    /// Cut the PNG at white instead of rolling bright parts off.
+    #[arg(long)]
+    plain: bool,
+    /// Write the PNG as it was sampled. By default noise is taken out of it, never out of the EXR.
+    #[arg(long)]
+    no_denoise: bool,
 }
 
-pub(super) fn format_of(path: &Path) -> Result<Format, Failure> {
+/// Where a picture comes from: all that decides its samples besides their numbers.
+#[derive(Debug, Serialize, Deserialize)]
+pub(in crate::cli) struct Origin {
+    pub(super) species: String,
+    pub(super) species_text: String,
+    pub(super) settings: String,
+    pub(super) seed: u64,
+    pub(super) view: String,
+    pub(super) geometry: String,
+}
+
+impl Origin {
+    /// As it stands in files of sums.
+    pub(super) fn text(&self) -> String {
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// From a file of sums.
+    pub(in crate::cli) fn of(sums: &FilmSums) -> Option<Self> {
+        serde_json::from_str(sums.of()).ok()
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+pub(in crate::cli) enum Format {
+    Png,
+    Exr,
+    Sums,
+}
+
+pub(in crate::cli) fn format_of(path: &Path) -> Result<Format, Failure> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
     match extension.to_ascii_lowercase().as_str() {
         "png" => Ok(Format::Png),
         "exr" => Ok(Format::Exr),
+        "safetensors" => Ok(Format::Sums),
         _ => Err(Failure::with_help(
             Blame::Input,
             format!(
                 "{} is no kind of picture that can be written",
                 path.display()
             ),
-            "end the name in .png or .exr",
+            "end the name in .png or .exr, or in .safetensors for sums to be merged",
         )),
     }
 }
 
 /// Writes the film to all outputs.
-pub(super) fn write(args: &Args, species: &Species, film: &Film) -> Result<(), Failure> {
-    let settings = format!(
-        "skin {} env {} env-turn {} res {}x{} spp {} sampler {:?} strands {:?} bake-photons {}",
-        args.skin,
-        args.env,
-        args.env_turn,
-        args.res[0],
-        args.res[1],
-        args.spp,
-        args.sampler,
-        args.strands,
-        args.bake_photons
-    ) + &match args.azimuths {
-        1 => String::new(),
-        n => format!(" azimuths {n}"),
-    };
-    let seed = args.seed.to_string();
+pub(in crate::cli) fn write(
+    outputs: &[PathBuf],
+    look: &Look,
+    film: &Film,
+    origin: &Origin,
+    sums: impl Fn() -> FilmSums,
+) -> Result<(), Failure> {
+    let seed = origin.seed.to_string();
     let provenance = [
         ("program", concat!("vair ", env!("CARGO_PKG_VERSION"))),
-        ("species", species.id.as_str()),
-        ("species_text", species.text.as_str()),
-        ("settings", settings.as_str()),
+        ("species", origin.species.as_str()),
+        ("species_text", origin.species_text.as_str()),
+        ("settings", origin.settings.as_str()),
         ("seed", seed.as_str()),
     ];
-    let curve = if args.plain {
-        Curve::Clip
-    } else {
-        Curve::Shoulder
-    };
     let view = ViewTransform {
-        exposure_ev: args.exposure,
-        curve,
+        exposure_ev: look.exposure,
+        curve: if look.plain {
+            Curve::Clip
+        } else {
+            Curve::Shoulder
+        },
     };
-    for output in &args.output {
+    for output in outputs {
         match format_of(output)? {
-            Format::Png if args.no_denoise => {
+            Format::Png if look.no_denoise => {
                 image::write_film_png(output, film, &view, &provenance)?;
             }
             Format::Png => {
                 image::write_film_png(output, &image::denoise(film), &view, &provenance)?;
             }
             Format::Exr => image::write_film_exr(output, film, &provenance)?,
+            Format::Sums => sums().write(output)?,
         }
     }
     Ok(())

@@ -1,0 +1,324 @@
+//! A rendering in progress: tiles that take samples in passes, and can be saved between any two of them.
+
+use super::film::PixelSums;
+use super::path::Integrator;
+use super::sums::{Counts, Header};
+use super::{Crop, Film, FilmSums, FilmSumsError, Pixel, RenderError, RenderJob, Report};
+use crate::progress::{Cancel, Progress};
+use crate::scene::Scene;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Side of a tile, pixels. Tiles lie on a lattice of the full frame.
+const TILE: u32 = 16;
+
+/// Samples a pixel before a tile may have enough.
+const LEAST: u32 = 16;
+
+/// Mean luminance below which a tile's error is not taken relative to its own light any more: nobody sees
+/// noise in the dark.
+const DARK: f64 = 0.02;
+
+/// The pixels of one tile; only one thread touches it at a time.
+struct Tile {
+    x: u32,
+    y: u32,
+    width: u32,
+    sums: Vec<PixelSums>,
+    /// The next sample.
+    next: u32,
+}
+
+impl Tile {
+    /// Relative error of the tile's luminance (see [`RenderJob::target_error`]).
+    fn error(&self) -> f64 {
+        let (mut mean, mut variance) = (0.0, 0.0);
+        for sums in &self.sums {
+            let (m, v) = sums.luminance();
+            mean += m;
+            variance += v;
+        }
+        let n = self.sums.len().max(1) as f64;
+        (variance / n).sqrt() / (mean / n).max(DARK)
+    }
+}
+
+/// A picture that is being made.
+pub struct Rendering<'a> {
+    job: RenderJob,
+    crop: Crop,
+    integrator: Integrator<'a>,
+    tiles: Vec<Tile>,
+    counts: Counts,
+    started: Instant,
+}
+
+impl<'a> Rendering<'a> {
+    /// Nothing rendered yet; the time limit begins to run.
+    ///
+    /// # Errors
+    /// Numbers that make no picture ([`RenderJob::check`]).
+    pub fn new(job: &RenderJob, scene: &'a Scene) -> Result<Self, RenderError> {
+        job.check()?;
+        Self::with(job, job.integrator(scene))
+    }
+
+    pub(super) fn with(job: &RenderJob, integrator: Integrator<'a>) -> Result<Self, RenderError> {
+        let crop = job.check()?;
+        Ok(Self {
+            job: job.clone(),
+            crop,
+            integrator,
+            tiles: tiles_of(job, &crop),
+            counts: Counts::default(),
+            started: Instant::now(),
+        })
+    }
+
+    /// Takes passes of 1, 1, 2, 4, 8, 16, 16, ... samples a pixel until all are taken or something stops it:
+    /// `cancel`, the job's time limit, or `until`. Whether the picture is complete.
+    ///
+    /// A time limit lets the first pass end, `until` does not.
+    pub fn run(
+        &mut self,
+        until: Option<Instant>,
+        progress: &dyn Progress,
+        cancel: &Cancel,
+    ) -> bool {
+        let pixels: usize = self.tiles.iter().map(|t| t.sums.len()).sum();
+        progress.begin("render", pixels as u64 * u64::from(self.job.spp), "samples");
+        let done = |t: &Tile| u64::from(t.next - self.job.first) * t.sums.len() as u64;
+        progress.advance(self.tiles.iter().map(done).sum());
+        let stopped = AtomicBool::new(false);
+        while let Some(from) = self.next_pass() {
+            let first = from == self.job.first;
+            let to = self.end().min(from + pass_size(from - self.job.first));
+            let (started, limit) = (self.started, self.job.time_limit);
+            let late = || {
+                let over = limit.is_some_and(|limit| started.elapsed() >= limit);
+                let due = until.is_some_and(|until| Instant::now() >= until);
+                let late = cancel.is_cancelled() || due || (!first && over);
+                late && {
+                    stopped.store(true, Ordering::Relaxed);
+                    true
+                }
+            };
+            if late() {
+                break;
+            }
+            let integrator = &self.integrator;
+            let (job, end) = (&self.job, self.end());
+            let counts: Vec<Counts> = self
+                .tiles
+                .par_iter_mut()
+                .map(|tile| {
+                    if tile.next >= to || enough(job, end, tile) || late() {
+                        return Counts::default();
+                    }
+                    let counts = trace(integrator, tile, to);
+                    progress.advance(counts.samples);
+                    counts
+                })
+                .collect();
+            counts.iter().for_each(|c| self.counts.add(c));
+            if stopped.load(Ordering::Relaxed) {
+                break;
+            }
+            progress.note(&format!("{} spp", to - self.job.first));
+        }
+        progress.finish();
+        self.next_pass().is_none()
+    }
+
+    /// One past the last sample.
+    fn end(&self) -> u32 {
+        self.job.first + self.job.spp
+    }
+
+    /// Where the tile that is farthest behind goes on; `None` if all have enough.
+    fn next_pass(&self) -> Option<u32> {
+        let open = |t: &&Tile| !enough(&self.job, self.end(), t);
+        self.tiles.iter().filter(open).map(|t| t.next).min()
+    }
+
+    /// Time since the rendering began.
+    pub fn spent(&self) -> Duration {
+        self.started.elapsed()
+    }
+
+    /// The picture as it is now.
+    pub fn film(&self) -> Film {
+        let least = self.tiles.iter().map(|t| t.next).min();
+        let least = least.unwrap_or(self.job.first) - self.job.first;
+        Film {
+            crop: self.crop,
+            resolution: self.job.resolution,
+            pixels: assemble(&self.tiles, &self.crop),
+            report: Report {
+                samples: self.counts.samples,
+                rays: self.counts.rays,
+                dropped: self.counts.dropped,
+                capped: self.counts.capped,
+                passes: passes_in(least),
+                complete: self.next_pass().is_none(),
+                elapsed: self.started.elapsed(),
+            },
+        }
+    }
+
+    /// The sums as they are now, to be written to a file.
+    ///
+    /// * `of`: what the samples are of, besides what the job says: another scene has another text.
+    pub fn sums(&self, of: &str) -> FilmSums {
+        FilmSums {
+            header: self.header(of),
+            pixels: (self.tiles.iter())
+                .flat_map(|tile| tile.sums.iter().copied())
+                .collect(),
+        }
+    }
+
+    fn header(&self, of: &str) -> Header {
+        let mut header = Header::new(of, &self.job);
+        header.next = self.tiles.iter().map(|t| t.next).collect();
+        header.counts = self.counts;
+        header
+    }
+
+    /// Goes on from sums of this very picture.
+    ///
+    /// # Errors
+    /// Sums of another picture; nothing has changed then.
+    pub fn resume(&mut self, sums: FilmSums) -> Result<(), FilmSumsError> {
+        sums.header.same_picture(&self.header(&sums.header.of))?;
+        let mut at = 0;
+        for (tile, next) in self.tiles.iter_mut().zip(&sums.header.next) {
+            let count = tile.sums.len();
+            tile.sums.copy_from_slice(&sums.pixels[at..at + count]);
+            tile.next = *next;
+            at += count;
+        }
+        self.counts = sums.header.counts;
+        Ok(())
+    }
+}
+
+/// Whether a tile needs no more samples. A function of its sums alone.
+fn enough(job: &RenderJob, end: u32, tile: &Tile) -> bool {
+    let met = |target: f64| tile.next - job.first >= LEAST && tile.error() <= target;
+    tile.next >= end || job.target_error.is_some_and(met)
+}
+
+/// Samples of the pass after `taken`: doubling, so that every pass ends on a whole net of points.
+fn pass_size(taken: u32) -> u32 {
+    taken.clamp(1, 16)
+}
+
+/// Whole passes in so many samples a pixel.
+fn passes_in(taken: u32) -> u32 {
+    match taken {
+        0 => 0,
+        1..=16 => 1 + taken.ilog2(),
+        _ => 5 + (taken - 16).div_ceil(16),
+    }
+}
+
+/// Tiles of a picture. Where they decide for themselves when to stop they are whole, whatever the crop, so
+/// that a crop shows what the full frame does.
+pub(super) fn extents(job: &RenderJob, crop: &Crop) -> Vec<Crop> {
+    let [width, height] = job.resolution;
+    let whole = Crop {
+        x: 0,
+        y: 0,
+        width,
+        height,
+    };
+    let bounds = if job.target_error.is_some() {
+        whole
+    } else {
+        *crop
+    };
+    let cut = |from: u32, low: u32, high: u32| {
+        let (a, b) = (from.max(low), (from + TILE).min(high));
+        (a, b - a)
+    };
+    let mut tiles = Vec::new();
+    for ty in crop.y / TILE..(crop.y + crop.height).div_ceil(TILE) {
+        for tx in crop.x / TILE..(crop.x + crop.width).div_ceil(TILE) {
+            let (x, width) = cut(tx * TILE, bounds.x, bounds.x + bounds.width);
+            let (y, height) = cut(ty * TILE, bounds.y, bounds.y + bounds.height);
+            tiles.push(Crop {
+                x,
+                y,
+                width,
+                height,
+            });
+        }
+    }
+    tiles
+}
+
+fn tiles_of(job: &RenderJob, crop: &Crop) -> Vec<Tile> {
+    extents(job, crop)
+        .into_iter()
+        .map(|extent| Tile {
+            x: extent.x,
+            y: extent.y,
+            width: extent.width,
+            sums: vec![PixelSums::default(); (extent.width * extent.height) as usize],
+            next: job.first,
+        })
+        .collect()
+}
+
+fn trace(integrator: &Integrator<'_>, tile: &mut Tile, to: u32) -> Counts {
+    let mut counts = Counts::default();
+    for (i, sums) in tile.sums.iter_mut().enumerate() {
+        let (x, y) = (
+            tile.x + i as u32 % tile.width,
+            tile.y + i as u32 / tile.width,
+        );
+        for index in tile.next..to {
+            let sample = integrator.sample(x, y, index);
+            counts.samples += 1;
+            counts.rays += u64::from(sample.rays);
+            counts.capped += u64::from(sample.capped);
+            counts.dropped += u64::from(!sums.add(&sample));
+        }
+    }
+    tile.next = to;
+    counts
+}
+
+fn assemble(tiles: &[Tile], crop: &Crop) -> Vec<Pixel> {
+    let blank = Pixel::from(&PixelSums::default());
+    let mut pixels = vec![blank; crop.width as usize * crop.height as usize];
+    for tile in tiles {
+        place(&tile.sums, tile.x, tile.y, tile.width, crop, &mut pixels);
+    }
+    pixels
+}
+
+/// Puts the pixels of a tile, as far as they are in the crop, into a picture of it.
+pub(super) fn place(
+    sums: &[PixelSums],
+    x: u32,
+    y: u32,
+    width: u32,
+    crop: &Crop,
+    pixels: &mut [Pixel],
+) {
+    for (i, sums) in sums.iter().enumerate() {
+        let (x, y) = (x + i as u32 % width, y + i as u32 / width);
+        let inside = |at: u32, from: u32, size: u32| (from..from + size).contains(&at);
+        if inside(x, crop.x, crop.width) && inside(y, crop.y, crop.height) {
+            let (x, y) = ((x - crop.x) as usize, (y - crop.y) as usize);
+            pixels[y * crop.width as usize + x] = Pixel::from(sums);
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "rendering_tests.rs"]
+mod tests;

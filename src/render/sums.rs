@@ -1,0 +1,375 @@
+//! Exact sums of some samples of a picture, as files: checkpoints, and parts made apart.
+//!
+//! A file is safetensors: the length of the header (u64, little-endian), the header (JSON), one array
+//! `pixels` of 64-bit words, pixel by pixel, tile by tile. The header's `__metadata__` has `vair_film`, the
+//! [`Header`] as JSON, and `sha256`, the checksum of that text followed by the array.
+
+use super::film::{PixelSums, WORDS};
+use super::rendering::{extents, place};
+use super::{Crop, Film, Filter, Pixel, RenderJob, Report, Sampler};
+use crate::blame::Blame;
+use crate::io::{AtomicFile, FileError, read_bounded};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+use std::fmt::Write as _;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Raised when the meaning of a word changes.
+const VERSION: u32 = 1;
+
+/// Largest file read, bytes.
+const FILE_LIMIT: u64 = 64 << 30;
+
+/// Sums that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum FilmSumsError {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// Not a file of a picture's sums, or no longer what was written.
+    #[error("{} does not hold the sums of a picture: {what}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What gave it away.
+        what: String,
+    },
+    /// Sums of another picture.
+    #[error("the sums are of another picture: {what} differs")]
+    Foreign {
+        /// Which part of what makes a picture.
+        what: &'static str,
+    },
+    /// Ranges of samples that do not follow one another.
+    #[error("samples {end} to {next} are missing or there twice")]
+    Gap {
+        /// End of a range.
+        end: u32,
+        /// Beginning of the next.
+        next: u32,
+    },
+    /// A range that was stopped before its end.
+    #[error("samples {first} to {end} are not complete: a tile stands at {at}")]
+    Unfinished {
+        /// First sample.
+        first: u32,
+        /// One past the last.
+        end: u32,
+        /// Next sample of the tile that is farthest behind.
+        at: u32,
+    },
+    /// No file.
+    #[error("there is nothing to merge")]
+    Nothing,
+}
+
+impl FilmSumsError {
+    /// Who has to act.
+    pub fn blame(&self) -> Blame {
+        match self {
+            Self::File(error) => error.blame(),
+            _ => Blame::Input,
+        }
+    }
+}
+
+/// What happened to the samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Counts {
+    pub(super) samples: u64,
+    pub(super) rays: u64,
+    pub(super) dropped: u64,
+    pub(super) capped: u64,
+}
+
+impl Counts {
+    pub(super) fn add(&mut self, other: &Self) {
+        self.samples += other.samples;
+        self.rays += other.rays;
+        self.dropped += other.dropped;
+        self.capped += other.capped;
+    }
+}
+
+/// What sums are of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Header {
+    version: u32,
+    /// The scene, in whatever words.
+    pub(super) of: String,
+    resolution: [u32; 2],
+    pub(super) crop: Crop,
+    seed: u64,
+    sampler: Sampler,
+    filter: Filter,
+    target_error: Option<f64>,
+    first: u32,
+    spp: u32,
+    /// The next sample of each tile.
+    pub(super) next: Vec<u32>,
+    pub(super) counts: Counts,
+}
+
+impl Header {
+    pub(super) fn new(of: &str, job: &RenderJob) -> Self {
+        Self {
+            version: VERSION,
+            of: of.to_owned(),
+            resolution: job.resolution,
+            crop: job.crop.unwrap_or(Crop {
+                x: 0,
+                y: 0,
+                width: job.resolution[0],
+                height: job.resolution[1],
+            }),
+            seed: job.seed,
+            sampler: job.sampler,
+            filter: job.filter,
+            target_error: job.target_error,
+            first: job.first,
+            spp: job.spp,
+            next: Vec::new(),
+            counts: Counts::default(),
+        }
+    }
+
+    fn job(&self) -> RenderJob {
+        RenderJob {
+            resolution: self.resolution,
+            crop: Some(self.crop),
+            spp: self.spp,
+            first: self.first,
+            target_error: self.target_error,
+            seed: self.seed,
+            sampler: self.sampler,
+            filter: self.filter,
+            time_limit: None,
+        }
+    }
+
+    /// Whether samples of the one are samples of the other too, whichever they are.
+    fn same_samples(&self, other: &Self) -> Result<(), FilmSumsError> {
+        let same = [
+            (self.of == other.of, "the scene"),
+            (self.resolution == other.resolution, "the size"),
+            (self.crop == other.crop, "the crop"),
+            (self.seed == other.seed, "the seed"),
+            (self.sampler == other.sampler, "the sampler"),
+            (self.filter == other.filter, "the pixel filter"),
+            (self.target_error == other.target_error, "the target error"),
+        ];
+        match same.into_iter().find(|(same, _)| !same) {
+            Some((_, what)) => Err(FilmSumsError::Foreign { what }),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether sums of the one may go on as the other.
+    pub(super) fn same_picture(&self, other: &Self) -> Result<(), FilmSumsError> {
+        self.same_samples(other)?;
+        if (self.first, self.spp) != (other.first, other.spp) {
+            return Err(FilmSumsError::Foreign {
+                what: "the range of samples",
+            });
+        }
+        Ok(())
+    }
+
+    fn check(&self) -> Result<Vec<Crop>, String> {
+        let job = self.job();
+        let crop = job.check().map_err(|e| e.to_string())?;
+        let tiles = extents(&job, &crop);
+        let end = self.first + self.spp;
+        if self.next.len() != tiles.len()
+            || self.next.iter().any(|n| !(self.first..=end).contains(n))
+        {
+            return Err("its tiles are not those of its size".to_owned());
+        }
+        Ok(tiles)
+    }
+}
+
+/// Exact sums of some samples of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmSums {
+    pub(super) header: Header,
+    /// Tile by tile.
+    pub(super) pixels: Vec<PixelSums>,
+}
+
+impl FilmSums {
+    /// What the samples are of: the text given to [`super::Rendering::sums`].
+    pub fn of(&self) -> &str {
+        &self.header.of
+    }
+
+    /// The samples: first, and one past the last.
+    pub fn range(&self) -> [u32; 2] {
+        [self.header.first, self.header.first + self.header.spp]
+    }
+
+    /// Puts finished ranges of samples together, whatever their order.
+    ///
+    /// # Errors
+    /// Sums of different pictures, unfinished ones, gaps and overlaps.
+    pub fn merge(mut parts: Vec<Self>) -> Result<Self, FilmSumsError> {
+        parts.sort_by_key(|part| part.header.first);
+        let mut parts = parts.into_iter();
+        let mut all = parts.next().ok_or(FilmSumsError::Nothing)?;
+        all.finished()?;
+        for part in parts {
+            part.finished()?;
+            all.header.same_samples(&part.header)?;
+            let [_, end] = all.range();
+            if part.header.first != end {
+                return Err(FilmSumsError::Gap {
+                    end,
+                    next: part.header.first,
+                });
+            }
+            for (sums, later) in all.pixels.iter_mut().zip(&part.pixels) {
+                sums.append(later);
+            }
+            all.header.spp += part.header.spp;
+            all.header.next = part.header.next;
+            all.header.counts.add(&part.header.counts);
+        }
+        Ok(all)
+    }
+
+    fn finished(&self) -> Result<(), FilmSumsError> {
+        let [first, end] = self.range();
+        match self.header.next.iter().copied().min() {
+            Some(at) if at < end => Err(FilmSumsError::Unfinished { first, end, at }),
+            _ => Ok(()),
+        }
+    }
+
+    /// The picture.
+    pub fn film(&self) -> Film {
+        let header = &self.header;
+        let blank = Pixel::from(&PixelSums::default());
+        let crop = header.crop;
+        let mut pixels = vec![blank; crop.width as usize * crop.height as usize];
+        let mut at = 0;
+        for tile in extents(&header.job(), &crop) {
+            let count = (tile.width * tile.height) as usize;
+            let sums = &self.pixels[at..at + count];
+            place(sums, tile.x, tile.y, tile.width, &crop, &mut pixels);
+            at += count;
+        }
+        Film {
+            crop,
+            resolution: header.resolution,
+            pixels,
+            report: Report {
+                samples: header.counts.samples,
+                rays: header.counts.rays,
+                dropped: header.counts.dropped,
+                capped: header.counts.capped,
+                complete: self.finished().is_ok(),
+                ..Report::default()
+            },
+        }
+    }
+
+    /// Writes a file: whole under its name, or not at all.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), FileError> {
+        let fail = |e: std::io::Error| FileError::new("write", path, e);
+        let text = serde_json::to_string(&self.header).map_err(|e| fail(e.into()))?;
+        let mut hasher = Sha256::new_with_prefix(text.as_bytes());
+        for sums in &self.pixels {
+            hasher.update(bytes_of(sums));
+        }
+        let size = self.pixels.len() * WORDS * 8;
+        let mut head = json!({
+            "pixels": {
+                "dtype": "U64", "shape": [self.pixels.len(), WORDS], "data_offsets": [0, size],
+            },
+            "__metadata__": {"vair_film": text, "sha256": hex(&hasher.finalize())},
+        })
+        .to_string();
+        while !head.len().is_multiple_of(8) {
+            head.push(' ');
+        }
+        let mut out = BufWriter::with_capacity(1 << 20, AtomicFile::create(path)?);
+        out.write_all(&(head.len() as u64).to_le_bytes())
+            .and_then(|()| out.write_all(head.as_bytes()))
+            .map_err(fail)?;
+        for sums in &self.pixels {
+            out.write_all(&bytes_of(sums)).map_err(fail)?;
+        }
+        let file = out.into_inner().map_err(|e| fail(e.into_error()))?;
+        file.commit()
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, that holds no sums of a picture, or of which a single bit is not as it
+    /// was written.
+    pub fn read(path: &Path) -> Result<Self, FilmSumsError> {
+        let bytes = read_bounded(path, FILE_LIMIT)?;
+        Self::decode(&bytes).map_err(|what| FilmSumsError::Damaged {
+            path: path.to_owned(),
+            what,
+        })
+    }
+
+    fn decode(bytes: &[u8]) -> Result<Self, String> {
+        let short = || "it is too short".to_owned();
+        let (length, rest) = bytes.split_first_chunk().ok_or_else(short)?;
+        let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|e| e.to_string())?;
+        let (head, array) = rest.split_at_checked(length).ok_or_else(short)?;
+        let head: Value = serde_json::from_slice(head).map_err(|e| format!("its header: {e}"))?;
+        let metadata = &head["__metadata__"];
+        let text = metadata["vair_film"].as_str();
+        let text = text.ok_or("its header says nothing of a picture")?;
+        let mut hasher = Sha256::new_with_prefix(text.as_bytes());
+        hasher.update(array);
+        if metadata["sha256"].as_str() != Some(hex(&hasher.finalize()).as_str()) {
+            return Err("its checksum is wrong".to_owned());
+        }
+        let header: Header = serde_json::from_str(text).map_err(|e| format!("its header: {e}"))?;
+        if header.version != VERSION {
+            return Err(format!(
+                "it is of version {}, not {VERSION}",
+                header.version
+            ));
+        }
+        let tiles = header.check()?;
+        let count: usize = tiles.iter().map(|t| (t.width * t.height) as usize).sum();
+        let (words, left) = array.as_chunks::<{ 8 * WORDS }>();
+        if words.len() != count || !left.is_empty() {
+            return Err(format!("it has {} pixels, not {count}", words.len()));
+        }
+        let pixels = words.iter().map(|bytes| {
+            let (words, _) = bytes.as_chunks::<8>();
+            PixelSums::from_words(&std::array::from_fn(|i| u64::from_le_bytes(words[i])))
+        });
+        Ok(Self {
+            pixels: pixels.collect(),
+            header,
+        })
+    }
+}
+
+fn bytes_of(sums: &PixelSums) -> [u8; 8 * WORDS] {
+    let mut bytes = [0; 8 * WORDS];
+    for (bytes, word) in bytes.chunks_exact_mut(8).zip(sums.words()) {
+        bytes.copy_from_slice(&word.to_le_bytes());
+    }
+    bytes
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}
