@@ -127,7 +127,7 @@ mod tests {
             let weight = |x: usize, y: usize| ((x * 7 + y * 13) % 5) as f64 + f64::from(x == y);
             let chosen = Distribution::new(width, height, weight);
             let mut seen = vec![0.0; width * height];
-            let (net, n) = (Sobol::new(2), 1 << 18);
+            let (net, n) = (Sobol::new(2), 1 << 21);
             for i in 0..n {
                 let u = net.point(i);
                 let ([x, y], place) = chosen.sample([u[0], u[1]]);
