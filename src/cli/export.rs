@@ -1,5 +1,8 @@
 //! `vair export`: the fur of a species for other programs.
 
+mod lines;
+mod volume;
+
 use super::{Console, Failure, bake::parse_count};
 use crate::assembly;
 use crate::bake::{Cache, Settings};
@@ -29,6 +32,7 @@ const MOST_LEVELS: usize = 4;
   vair export red-fox --profile unreal --units cm --up z -o fox.usd
   vair export lynx --profile blender --levels 1 -o lynx.usdc
   vair export cat --strands 500 --curves phantom -o cat.usda
+  vair export mink --grids density,color,surface --wrap mink-volume.usda -o mink.vdb
 
 The file is a component asset: under its default prim stand the skin as a mesh (geo/skin), the strands
 as curves, one prim a hair class (geo/render), few wide strands for viewports (geo/proxy) and guides
@@ -95,7 +99,10 @@ pub(super) struct Args {
     /// Override a field of the species: `guard.groom.length_mm=20`. May repeat.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Where the fur goes: .usdc, .usd or .usda. May repeat.
+    #[command(flatten)]
+    volume: volume::VolumeArgs,
+    /// Where the fur goes: .usdc, .usd or .usda; grids of it: .vdb; plain strands: .hair, .npz, .ply,
+    /// .glb, .pbrt. May repeat.
     #[arg(long, short, required = true)]
     output: Vec<PathBuf>,
 }
@@ -149,6 +156,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     // All that can be refused is refused before any work.
     let species = species::load(&args.name, &args.set)?;
     let settings = settings(args)?;
+    let grids = volume::settings(&args.volume, &args.output, settings.frame)?;
     for output in &args.output {
         Format::of(output)?;
         check_writable(output)?;
@@ -166,7 +174,11 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         strands,
         seed: args.seed,
     };
-    let looks = looks(args, &species, console)?;
+    // Only assets have materials.
+    let looks = match writes_usd(args)? {
+        true => looks(args, &species, console)?,
+        false => Vec::new(),
+    };
     let groom = groom::grow(&skin, &species, &grown, console, cancel)?;
     let levels = asset::levels(&groom, &skin, &species, args.levels)?;
     let parts = Parts {
@@ -178,6 +190,21 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         seed: args.seed,
     };
     for output in &args.output {
+        if let Format::Lines(format) = Format::of(output)? {
+            lines::run(output, format, &parts, settings.frame, console)?;
+            continue;
+        }
+        if Format::of(output)? == Format::Vdb {
+            volume::run(
+                output,
+                &parts,
+                &args.volume,
+                &grids,
+                settings.frame,
+                console,
+            )?;
+            continue;
+        }
         asset::write(output, &parts, &settings, console, cancel)?;
         console.say(format!("{}: {}", output.display(), described(&parts)));
     }
@@ -212,6 +239,13 @@ fn looks(args: &Args, species: &Species, console: &Console) -> Result<Vec<ClassL
         ));
     }
     Ok(looks)
+}
+
+/// Whether any output is an asset, not only grids and plain strands.
+fn writes_usd(args: &Args) -> Result<bool, ExportError> {
+    let formats: Result<Vec<_>, _> = args.output.iter().map(|o| Format::of(o)).collect();
+    let is_usd = |f: &Format| matches!(f, Format::UsdText | Format::UsdBinary);
+    Ok(formats?.iter().any(is_usd))
 }
 
 /// What was asked for in the words of the library.
@@ -273,6 +307,9 @@ fn announce(
     let (strands, points) = (forecast.strands, forecast.points);
     let binary = asset::estimate(skin, [strands, points], args.levels, settings);
     let memory = 2 * (points * OF_POINT + strands * OF_STRAND);
+    if !writes_usd(args)? {
+        return Ok(());
+    }
     console.say(format!(
         "{strands} strands of {points} points: about {} in binary form, {} of memory",
         megabytes(binary),

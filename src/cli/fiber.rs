@@ -1,6 +1,7 @@
 //! `vair fiber`: a fiber as a microscopist would draw it, or as a mesh.
 
 mod mesh;
+mod volume;
 
 use super::bake::{find_class, find_station};
 use super::stdout::print_json;
@@ -74,11 +75,18 @@ pub(super) struct Args {
     /// Seed of scales and voids.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Edge of a voxel of a .vdb, micrometers; for some four million of them if not given.
+    #[arg(long, value_name = "UM")]
+    voxel_um: Option<f64>,
+    /// Store the grids of a .vdb in half precision.
+    #[arg(long)]
+    half: bool,
     /// Print a summary of the fiber as JSON.
     #[arg(long)]
     json: bool,
     /// Where it goes: .png is a picture; .obj, .ply and .glb are meshes of one period with the
-    /// parts `cuticle`, `riser`, `medulla` (a medium) and `void`. May repeat.
+    /// parts `cuticle`, `riser`, `medulla` (a medium) and `void`; .vdb are grids of one period: `density`,
+    /// `ior`, `medulla`, `absorption`, in micrometers. May repeat.
     #[arg(long, short)]
     output: Vec<PathBuf>,
 }
@@ -191,6 +199,10 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
             }
             Format::Obj => mesh::write_obj(path, &fiber.mesh())?,
             Format::Ply => mesh::write_ply(path, &fiber.mesh())?,
+            Format::Vdb => {
+                let subject = (&species, class, station);
+                volume::write(path, subject, &fiber, args.voxel_um, args.half, console)?;
+            }
             Format::Glb => {
                 AtomicFile::write_all_to(path, &fiber.to_glb(&species.name))?;
                 console.say(mesh::how_to_use(path, &fiber));
@@ -208,6 +220,7 @@ enum Format {
     Obj,
     Ply,
     Glb,
+    Vdb,
 }
 
 fn format_of(path: &Path) -> Result<Format, Failure> {
@@ -217,10 +230,11 @@ fn format_of(path: &Path) -> Result<Format, Failure> {
         "obj" => Ok(Format::Obj),
         "ply" => Ok(Format::Ply),
         "glb" => Ok(Format::Glb),
+        "vdb" => Ok(Format::Vdb),
         _ => Err(Failure::with_help(
             Blame::Input,
             format!("{}: unknown kind of file", path.display()),
-            "the name must end in .png, .obj, .ply or .glb",
+            "the name must end in .png, .obj, .ply, .glb or .vdb",
         )),
     }
 }

@@ -7,6 +7,7 @@
 mod bake;
 mod cache;
 mod console;
+mod convert;
 mod export;
 mod failure;
 mod fiber;
@@ -41,7 +42,7 @@ struct Cli {
 enum Command {
     /// Show the built-in animals and check species files.
     Species(species::Args),
-    /// Draw a fiber like a micrograph, or write it as a mesh.
+    /// Draw a fiber like a micrograph, or write it as a mesh or as grids.
     Fiber(fiber::Args),
     /// Trace photons through a fiber into a scattering table.
     Bake(bake::Args),
@@ -53,6 +54,8 @@ enum Command {
     Export(export::Args),
     /// Look into scattering tables, dye them, draw them.
     Table(table::Args),
+    /// Bring strands from one file format into another.
+    Convert(convert::Args),
     /// Show or clear the cache of baked tables.
     Cache(cache::Args),
     /// The library in pictures: a contact sheet, or pages of Markdown.
@@ -111,6 +114,7 @@ fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
         Command::Bake(args) => bake::run(&args, console),
         Command::Merge(args) => merge::run(&args, console),
         Command::Cache(args) => cache::run(&args, console),
+        Command::Convert(args) => convert::run(&args, console),
     }
 }
 

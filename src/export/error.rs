@@ -48,7 +48,9 @@ impl ExportError {
     /// What the user can do about it.
     pub fn remedy(&self) -> Option<&'static str> {
         match self {
-            Self::Suffix { .. } => Some("end the name in .usdc, .usd or .usda"),
+            Self::Suffix { .. } => {
+                Some("end the name in .usdc, .usd, .usda, .vdb, .hair, .npz, .ply, .glb or .pbrt")
+            }
             Self::Empty => Some("ask for more --strands"),
             _ => None,
         }

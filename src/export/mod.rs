@@ -1,10 +1,11 @@
 //! Files for other programs.
 //!
 //! [`usd`] and [`vdb`] are formats and know nothing of fur; [`asset`] makes a component asset of a groom,
-//! [`volume`] grids; [`mitsuba`] writes a whole scene.
+//! [`volume`] grids, [`lines`] plain strands; [`mitsuba`] writes a whole scene.
 
 pub mod asset;
 mod error;
+pub mod lines;
 pub mod mitsuba;
 pub mod usd;
 pub mod vdb;
@@ -21,6 +22,10 @@ pub enum Format {
     UsdText,
     /// `.usdc` and `.usd`: the same in binary form.
     UsdBinary,
+    /// `.vdb`: grids of density, color and others.
+    Vdb,
+    /// Plain strands: `.hair`, `.npz`, `.ply`, `.glb`, `.pbrt`.
+    Lines(lines::LineFormat),
 }
 
 impl Format {
@@ -33,9 +38,13 @@ impl Format {
         match suffix.to_ascii_lowercase().as_str() {
             "usda" => Ok(Self::UsdText),
             "usdc" | "usd" => Ok(Self::UsdBinary),
-            _ => Err(ExportError::Suffix {
-                path: path.to_owned(),
-            }),
+            "vdb" => Ok(Self::Vdb),
+            other => match lines::LineFormat::of_suffix(other) {
+                Some(format) => Ok(Self::Lines(format)),
+                None => Err(ExportError::Suffix {
+                    path: path.to_owned(),
+                }),
+            },
         }
     }
 }

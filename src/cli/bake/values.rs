@@ -50,7 +50,7 @@ pub(super) fn parse_time(text: &str) -> Result<Duration, String> {
 }
 
 /// `2G`, `500M` and `64k` are bytes, in powers of 1000.
-pub(super) fn parse_bytes(text: &str) -> Result<u64, String> {
+pub(in crate::cli) fn parse_bytes(text: &str) -> Result<u64, String> {
     let short = text.trim_end_matches(['B', 'b']);
     let digits = short.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = match &short[digits.len()..] {

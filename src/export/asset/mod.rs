@@ -10,6 +10,7 @@
 //! ```
 
 mod color;
+mod colors;
 mod curves;
 mod frame;
 mod levels;
@@ -22,11 +23,13 @@ mod strands;
 mod tree;
 mod write;
 
+pub use colors::colors;
 pub use curves::Curves;
 pub use frame::{Frame, Units, Up};
 pub use levels::{Level, LevelClass, levels};
 pub use look::{ClassLook, HairLook, LobeError};
 pub use profile::{Column, Profile, READERS, Reader};
+pub use provenance::identifier;
 pub use tree::layer;
 pub use write::{estimate, write};
 

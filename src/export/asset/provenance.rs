@@ -5,7 +5,7 @@ use crate::export::usd::{Attribute, Dictionary, Prim, Value};
 use sha2::{Digest as _, Sha256};
 
 /// Name of a species as an identifier.
-pub(super) fn identifier(name: &str) -> String {
+pub fn identifier(name: &str) -> String {
     let mut out: String = name
         .chars()
         .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })

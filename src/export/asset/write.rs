@@ -70,6 +70,11 @@ pub fn write(
     let form = match Format::of(path)? {
         Format::UsdText => Form::Text,
         Format::UsdBinary => Form::Binary,
+        _ => {
+            return Err(ExportError::Suffix {
+                path: path.to_owned(),
+            });
+        }
     };
     check(parts.groom)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();

@@ -21,7 +21,7 @@ pub struct Curves<'a> {
     pub widths: &'a [f32],
     /// Start of each curve in `points`; one more entry than curves.
     pub offsets: &'a [u32],
-    /// Linear color at each control point; may be empty where no colors are asked for.
+    /// Scattering albedo at each control point, linear; may be empty where no colors are asked for.
     pub colors: &'a [Vec3],
 }
 

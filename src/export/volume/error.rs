@@ -72,6 +72,18 @@ pub enum VolumeError {
         /// Largest number possible.
         limit: i64,
     },
+    /// More voxels than a fiber may have.
+    #[error(
+        "voxels of {voxel_um} um: the fiber would have {voxels:.1e} of them, at most {limit:.1e} are possible"
+    )]
+    FineFiber {
+        /// Edge of a voxel, micrometers.
+        voxel_um: f64,
+        /// Voxels in the fiber.
+        voxels: f64,
+        /// Largest number possible.
+        limit: f64,
+    },
     /// Nothing to fill voxels with.
     #[error("there are no strands to fill voxels with")]
     Empty,

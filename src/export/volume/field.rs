@@ -7,25 +7,26 @@ use glam::{IVec3, Vec3};
 /// A grid of a coat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Field {
-    /// Diameter times length of the strands in a voxel over its volume, 1/m: the extinction coefficient
+    /// Diameter times length of the strands in a voxel over its volume, one over a unit of length: the extinction coefficient
     /// for light across the strands. It does not change when a groom is thinned, whose strands
     /// are widened so that they cover as much.
     Density,
-    /// Mean color of the strands, linear Rec.709, weighted by area; it reaches a voxel farther than they
-    /// do, so that interpolation at the edge of the coat does not mix in black.
+    /// Mean scattering albedo of the strands, linear Rec.709, weighted by area: what a volume shader needs
+    /// as its color to look like fur of the strands' color (see [`super::scattering_albedo`]). It reaches a
+    /// voxel farther than they do, so that interpolation at the edge of the coat does not mix in black.
     Color,
     /// The same under the name that Houdini and RenderMan look for, `Cd`.
     Cd,
     /// Mean of the unit tangents, root to tip, weighted by area: its length is 1 where all are parallel.
     Tangent,
-    /// Mean diameter by length, m: density over width is the length of strands per volume.
+    /// Mean diameter by length: density over width is the length of strands per volume.
     Width,
     /// Share of a straight line's chance to meet a strand on its way across the voxel, across the
     /// strands: 1 - exp(-density x voxel).
     Coverage,
     /// Share of the volume that strands fill. Of a thinned groom it is that of the widened strands.
     Fraction,
-    /// Signed distance from the skin, m, negative inside.
+    /// Signed distance from the skin, negative inside.
     Surface,
 }
 
@@ -75,19 +76,24 @@ impl Field {
         matches!(self, Self::Color | Self::Cd | Self::Tangent)
     }
 
-    /// Unit of its values.
-    pub fn unit(self) -> &'static str {
+    /// Unit of its values where that of length is so many meters.
+    pub fn unit(self, meters: f64) -> String {
+        let length = match meters {
+            1.0 => "m".to_owned(),
+            0.01 => "cm".to_owned(),
+            other => format!("({other} m)"),
+        };
         match self {
-            Self::Density => "1/m",
-            Self::Color | Self::Cd => "linear Rec.709",
-            Self::Width | Self::Surface => "m",
-            Self::Tangent | Self::Coverage | Self::Fraction => "1",
+            Self::Density => format!("1/{length}"),
+            Self::Color | Self::Cd => "linear Rec.709".to_owned(),
+            Self::Width | Self::Surface => length,
+            Self::Tangent | Self::Coverage | Self::Fraction => "1".to_owned(),
         }
     }
 
     /// Metadata beyond what the format asks for.
-    pub(super) fn metadata(self) -> Vec<(String, Meta)> {
-        let mut all = vec![("unit".to_owned(), Meta::Text(self.unit().to_owned()))];
+    pub(super) fn metadata(self, meters: f64) -> Vec<(String, Meta)> {
+        let mut all = vec![("unit".to_owned(), Meta::Text(self.unit(meters)))];
         match self {
             Self::Color | Self::Cd => all.push(VectorKind::Invariant.meta()),
             Self::Tangent => all.push(VectorKind::ContravariantRelative.meta()),

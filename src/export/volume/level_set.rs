@@ -46,6 +46,20 @@ impl Mesh<'_> {
         }
         balance.values().map(|b| b.unsigned_abs() as usize).sum()
     }
+
+    /// Refuses a mesh that has no inside.
+    ///
+    /// # Errors
+    /// [`VolumeError::Open`] with the number of open edges.
+    pub fn check_closed(&self) -> Result<(), VolumeError> {
+        match self.open_edges() {
+            0 => Ok(()),
+            open => Err(VolumeError::Open {
+                skin: self.name.to_owned(),
+                open,
+            }),
+        }
+    }
 }
 
 /// The signed distance from a mesh, negative inside.
@@ -66,12 +80,8 @@ pub fn signed_distance(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Tree<f32>, VolumeError> {
-    let open = mesh.open_edges();
-    if shell == 0.0 && open > 0 {
-        return Err(VolumeError::Open {
-            skin: mesh.name.to_owned(),
-            open,
-        });
+    if shell == 0.0 {
+        mesh.check_closed()?;
     }
     let corners: Vec<[DVec3; 3]> = (mesh.triangles.iter())
         .map(|t| t.map(|v| mesh.positions[v as usize].as_dvec3() / voxel))

@@ -1,33 +1,41 @@
 //! A coat as grids: how much fur, of which color and direction, is where; and the skin under it.
 //!
-//! Lengths are meters and the frame is that of the groom, so that grids lie over exported strands.
-//! Voxel `i` is centered at `i` times its edge. What strands leave in a voxel is exact up to how they
+//! Lengths are in one unit throughout, meters unless [`VolumeSettings`] say otherwise, and in the frame
+//! of the strands, so that grids lie over them. Voxel `i` is centered at `i` times its edge. What strands leave in a voxel is exact up to how they
 //! are cut into straight pieces: every piece is shared out among the voxels it passes through.
 
+mod color;
 mod curve;
 mod distance;
 mod error;
+mod fiber;
 mod field;
 mod level_set;
 mod moments;
 mod resolution;
 mod spread;
+mod stage;
 #[cfg(test)]
 mod tests;
 mod walk;
+mod weld;
 mod winding;
 
+pub use color::scattering_albedo;
 pub use curve::Curves;
 pub use error::VolumeError;
+pub use fiber::{FiberGrids, write_fiber};
 pub use field::Field;
 pub use level_set::{Mesh, signed_distance};
 pub use resolution::{Statistics, statistics};
+pub use stage::stage;
+pub use weld::weld;
 
 use crate::export::vdb::{Compression, Grid, Leaf, Meta, Tree, Value, Writer};
 use crate::progress::{Cancel, Progress};
 use error::Stopped;
 use field::{scalar_leaf, vector_leaf};
-use glam::Vec3;
+use glam::{IVec3, Vec3};
 use moments::{Listing, Moments};
 use spread::spread;
 use std::io::{Seek, Write};
@@ -37,7 +45,9 @@ use std::io::{Seek, Write};
 pub struct VolumeSettings {
     /// Which grids.
     pub fields: Vec<Field>,
-    /// Edge of a voxel, meters; `None` for what suits the coat and the memory.
+    /// Length of a unit, meters: what the coordinates of strands and skin are in.
+    pub meters_per_unit: f64,
+    /// Edge of a voxel, units; `None` for what suits the coat and the memory.
     pub voxel: Option<f64>,
     /// Whether values are stored in half precision.
     pub half: bool,
@@ -45,7 +55,7 @@ pub struct VolumeSettings {
     pub compression: Compression,
     /// Most memory for the grids of strands, bytes.
     pub memory: u64,
-    /// Thickness of the skin for [`Field::Surface`], meters; 0 for the solid inside it.
+    /// Thickness of the skin for [`Field::Surface`], units; 0 for the solid inside it.
     pub shell: f64,
     /// Entries of metadata that every grid gets: where it comes from.
     pub provenance: Vec<(String, Meta)>,
@@ -55,6 +65,7 @@ impl Default for VolumeSettings {
     fn default() -> Self {
         Self {
             fields: vec![Field::Density, Field::Color, Field::Tangent],
+            meters_per_unit: 1.0,
             voxel: None,
             half: false,
             compression: Compression::Zip,
@@ -68,7 +79,7 @@ impl Default for VolumeSettings {
 /// What is going to be made.
 #[derive(Debug)]
 pub struct Plan {
-    /// Edge of a voxel, meters.
+    /// Edge of a voxel, units.
     pub voxel: f64,
     /// Leaves of 8 x 8 x 8 voxels that strands pass through.
     pub leaves: usize,
@@ -88,6 +99,8 @@ pub struct Written {
     pub active: u64,
     /// Active leaves.
     pub leaves: usize,
+    /// First and last active voxel along each axis.
+    pub bounds: Option<(IVec3, IVec3)>,
     /// Sum of the values times the volume of a voxel, the first component of vectors: for the density,
     /// the area of all strands.
     pub integral: f64,
@@ -108,7 +121,7 @@ pub fn plan(
     let [least, most] = resolution::RANGE;
     if !(least..=most).contains(&voxel) {
         return Err(VolumeError::Voxel {
-            voxel_mm: voxel * 1e3,
+            voxel_mm: voxel * 1e3 * settings.meters_per_unit,
         });
     }
     let per_leaf: u64 = settings.fields.iter().map(|f| f.leaf_bytes()).sum();
@@ -127,7 +140,7 @@ pub fn plan(
         }
         if settings.voxel.is_some() || voxel * 1.25 > most {
             return Err(VolumeError::Memory {
-                voxel_mm: voxel * 1e3,
+                voxel_mm: voxel * 1e3 * settings.meters_per_unit,
                 leaves,
                 needed_mb: memory as f64 / 1e6,
                 limit_mb: settings.memory as f64 / 1e6,
@@ -216,7 +229,7 @@ fn put<T: Value, W: Write + Seek>(
     settings: &VolumeSettings,
 ) -> Result<Written, VolumeError> {
     tree.drop_empty();
-    let mut metadata = field.metadata();
+    let mut metadata = field.metadata(settings.meters_per_unit);
     metadata.extend(settings.provenance.iter().cloned());
     let mut sum = 0.0;
     for leaf in tree.leaves() {
@@ -228,6 +241,7 @@ fn put<T: Value, W: Write + Seek>(
     let summary = Written {
         field,
         active: tree.active_count(),
+        bounds: tree.active_bounds(),
         leaves: tree.leaves().len(),
         integral: sum * plan.voxel.powi(3),
     };

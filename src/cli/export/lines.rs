@@ -1,0 +1,45 @@
+//! The part of `vair export` that writes plain strands.
+
+use super::super::{Console, Failure};
+use crate::export::asset::{self, Frame, Parts};
+use crate::export::lines::{self, LineFormat, LineSet, LinesError};
+use std::path::Path;
+
+impl From<LinesError> for Failure {
+    fn from(error: LinesError) -> Self {
+        Self::new(error.blame(), error)
+    }
+}
+
+/// Writes the strands of a groom with their colors.
+pub(super) fn run(
+    path: &Path,
+    format: LineFormat,
+    parts: &Parts<'_>,
+    frame: Frame,
+    console: &Console,
+) -> Result<(), Failure> {
+    let groom = parts.groom;
+    asset::check(groom)?;
+    let set = LineSet {
+        points: groom.points.iter().map(|p| frame.point(*p)).collect(),
+        widths: groom.widths.iter().map(|w| frame.length(*w)).collect(),
+        offsets: groom.offsets.clone(),
+        colors: asset::colors(groom, parts.species),
+    };
+    let origin = format!(
+        "{} on {}, seed {}, by vair {}",
+        parts.species.id,
+        parts.skin.name,
+        parts.seed,
+        env!("CARGO_PKG_VERSION")
+    );
+    lines::write(path, format, &set.lines(&origin))?;
+    console.say(format!(
+        "{}: {} strands, {} points",
+        path.display(),
+        groom.strands(),
+        groom.points.len()
+    ));
+    Ok(())
+}
