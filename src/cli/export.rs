@@ -8,7 +8,7 @@ use crate::assembly;
 use crate::bake::{Cache, Settings};
 use crate::blame::Blame;
 use crate::export::asset::{
-    self, AssetSettings, ClassLook, Curves, Frame, Parts, Profile, READERS, Units, Up,
+    self, AssetSettings, ClassLook, Curves, Frame, Layout, Parts, Profile, READERS, Units, Up,
 };
 use crate::export::{ExportError, Format};
 use crate::groom::{self, Forecast, GroomSettings};
@@ -30,6 +30,7 @@ const MOST_LEVELS: usize = 4;
   vair export red-fox -o fox.usdc
   vair export mink --skin sofa.obj --strands 1e6 -o sofa.usdc
   vair export red-fox --profile unreal --units cm --up z -o fox.usd
+  vair export red-fox --layout payload -o fox.usda
   vair export lynx --profile blender --levels 1 -o lynx.usdc
   vair export cat --strands 500 --curves phantom -o cat.usda
   vair export mink --grids density,color,surface --wrap mink-volume.usda -o mink.vdb
@@ -78,6 +79,9 @@ pub(super) struct Args {
     /// Levels of detail, 1 to 4.
     #[arg(long, value_name = "N", default_value_t = 3)]
     levels: usize,
+    /// One file, or a small one that loads `NAME.payload.usdc` beside it on demand.
+    #[arg(long, value_enum, default_value = "single")]
+    layout: LayoutArg,
     /// Leave out the few wide strands for viewports.
     #[arg(long)]
     no_proxy: bool,
@@ -117,6 +121,14 @@ enum CurvesArg {
     Bezier,
     /// Straight pieces.
     Linear,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum LayoutArg {
+    /// All in one file.
+    Single,
+    /// An interface and its payload.
+    Payload,
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -288,6 +300,10 @@ fn settings(args: &Args) -> Result<AssetSettings, Failure> {
             },
         },
         profile: Profile::of(&readers),
+        layout: match args.layout {
+            LayoutArg::Single => Layout::Single,
+            LayoutArg::Payload => Layout::Payload,
+        },
         no_proxy: args.no_proxy,
         no_guides: args.no_guides,
     })
@@ -317,7 +333,8 @@ fn announce(
     ));
     for output in &args.output {
         let text = 4 * binary;
-        if Format::of(output)? != Format::UsdText || text <= MUCH_TEXT {
+        let is_text = Format::of(output)? == Format::UsdText && settings.layout == Layout::Single;
+        if !is_text || text <= MUCH_TEXT {
             continue;
         }
         let remark = format!(

@@ -11,6 +11,7 @@
 
 mod color;
 mod colors;
+mod columns;
 mod curves;
 mod frame;
 mod levels;
@@ -30,7 +31,7 @@ pub use levels::{Level, LevelClass, levels};
 pub use look::{ClassLook, HairLook, LobeError};
 pub use profile::{Column, Profile, READERS, Reader};
 pub use provenance::identifier;
-pub use tree::layer;
+pub use tree::{interface, layer};
 pub use write::{estimate, write};
 
 use super::ExportError;
@@ -55,6 +56,17 @@ pub struct Parts<'a> {
     pub seed: u64,
 }
 
+/// How an asset is divided into files.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Layout {
+    /// Everything in one.
+    #[default]
+    Single,
+    /// A small one that can be referred to without cost, and `NAME.payload.usdc` beside it with skin,
+    /// strands and materials, which is loaded on demand.
+    Payload,
+}
+
 /// How a component asset is written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct AssetSettings {
@@ -64,6 +76,8 @@ pub struct AssetSettings {
     pub frame: Frame,
     /// Who is to read it.
     pub profile: Profile,
+    /// In one file, or two.
+    pub layout: Layout,
     /// Without few wide strands for viewports.
     pub no_proxy: bool,
     /// Without guides.

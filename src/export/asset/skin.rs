@@ -18,10 +18,7 @@ pub(super) fn mesh<'a>(skin: &'a Skin, frame: Frame, color: Vec3) -> Prim<'a> {
             turn(frame, of(skin, source[i] as usize)).to_array()
         }))
     };
-    let (lo, hi) = (source.iter()).fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), &v| {
-        let p = frame.point(skin.positions[v as usize]);
-        (lo.min(p), hi.max(p))
-    });
+    let (lo, hi) = extent(skin, frame);
     let mut mesh = Prim::new("Mesh", "skin");
     let extent = Rows::of(vec![lo.to_array(), hi.to_array()]);
     mesh.set("float3[]", "extent", Array::Vec3(extent).into());
@@ -57,6 +54,15 @@ pub(super) fn mesh<'a>(skin: &'a Skin, frame: Frame, color: Vec3) -> Prim<'a> {
     mesh.primvar("texCoord2f[]", "st", "vertex", Array::Vec2(uvs).into());
     mesh.set_uniform("token", "subdivisionScheme", Value::token("none"));
     mesh
+}
+
+/// Corners of the box around all triangles.
+pub(super) fn extent(skin: &Skin, frame: Frame) -> (Vec3, Vec3) {
+    let corners = skin.triangles.iter().flatten();
+    let points = corners.map(|&v| frame.point(skin.positions[v as usize]));
+    points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| {
+        (lo.min(p), hi.max(p))
+    })
 }
 
 /// The vertices that a file has.

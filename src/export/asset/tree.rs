@@ -3,48 +3,77 @@
 use super::color::Zones;
 use super::levels::{Level, LevelClass, guides, proxy};
 use super::look::ClassLook;
-use super::profile::{Column, Reader};
+use super::profile::Reader;
 use super::provenance::{PROGRAM, asset_info, identifier, recipe, user_properties};
 use super::strands::Strands;
 use super::{AssetSettings, Parts, material, skin};
 use crate::export::usd::{Array, Attribute, Layer, Prim, Rows, Value, VariantSet};
 use crate::species::HairClass;
 use glam::Vec3;
-use std::sync::Arc;
 
 /// A groom as one file.
 ///
 /// * `file`: its name, without a folder.
 pub fn layer<'a>(parts: &Parts<'a>, settings: &'a AssetSettings, file: &str) -> Layer<'a> {
-    let root = Builder { parts, settings }.root(file);
+    Layer {
+        prims: vec![Builder { parts, settings }.root(file)],
+        ..layer_around(parts, settings)
+    }
+}
+
+/// The file of an asset that is read before its payload: what it is, and how large.
+///
+/// * `file`: its name, without a folder. * `payload`: that of the payload beside it.
+pub fn interface<'a>(
+    parts: &Parts<'a>,
+    settings: &'a AssetSettings,
+    file: &str,
+    payload: &str,
+) -> Layer<'a> {
+    let builder = Builder { parts, settings };
+    let mut root = builder.bare_root(file);
+    root.payload = Some(format!("./{payload}"));
+    root.api_schemas.push("GeomModelAPI".to_owned());
+    let hints = Array::Vec3(Rows::of(builder.extents()));
+    root.set("float3[]", "extentsHint", hints.into());
+    Layer {
+        prims: vec![root],
+        ..layer_around(parts, settings)
+    }
+}
+
+/// A layer without prims.
+fn layer_around<'a>(parts: &Parts<'_>, settings: &AssetSettings) -> Layer<'a> {
     Layer {
         documentation: format!(
             "Fur of {} ({}), by {PROGRAM}",
             parts.species.name, parts.species.id
         ),
-        default_prim: root.name.clone(),
+        default_prim: identifier(&parts.species.id),
         meters_per_unit: settings.frame.meters_per_unit(),
         up_axis: settings.frame.up_axis(),
         custom_data: vec![("creator".to_owned(), Value::string(PROGRAM))],
-        prims: vec![root],
+        prims: Vec::new(),
     }
 }
 
-struct Builder<'p, 'a> {
-    parts: &'p Parts<'a>,
-    settings: &'a AssetSettings,
+/// Makes the prims of an asset.
+pub(super) struct Builder<'p, 'a> {
+    pub(super) parts: &'p Parts<'a>,
+    pub(super) settings: &'a AssetSettings,
 }
 
 /// What a prim of curves is for.
 #[derive(Clone, Copy, PartialEq)]
-enum Purpose {
+pub(super) enum Purpose {
     Render,
     Proxy,
     Guide,
 }
 
 impl<'a> Builder<'_, 'a> {
-    fn root(&self, file: &str) -> Prim<'a> {
+    /// The root without what is below it.
+    fn bare_root(&self, file: &str) -> Prim<'a> {
         let species = self.parts.species;
         let mut root = Prim::new("Xform", identifier(&species.id));
         root.documentation = species.summary.clone();
@@ -68,6 +97,11 @@ impl<'a> Builder<'_, 'a> {
                 ("seed", Value::string(seed)),
             ],
         );
+        root
+    }
+
+    fn root(&self, file: &str) -> Prim<'a> {
+        let mut root = self.bare_root(file);
         let mut scope = Prim::new("Scope", "mtl");
         scope.children = self.materials();
         root.children.push(self.geometry());
@@ -83,6 +117,41 @@ impl<'a> Builder<'_, 'a> {
             });
         }
         root
+    }
+
+    /// Boxes around all that is shown always, in pictures, in viewports and as guides.
+    fn extents(&self) -> Vec<[f32; 3]> {
+        let full = &self.parts.levels[0];
+        let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let around = |level: &Level| {
+            let boxes = self.classes(level).into_iter();
+            boxes.fold(empty, |(lo, hi), (_, strands)| {
+                let [a, b] = self.strands(strands).extent().map(Vec3::from_array);
+                (lo.min(a), hi.max(b))
+            })
+        };
+        let mut boxes = vec![
+            skin::extent(self.parts.skin, self.settings.frame),
+            around(full),
+        ];
+        if !self.settings.no_proxy {
+            boxes.push(around(&proxy(full)));
+        }
+        boxes
+            .iter()
+            .flat_map(|(lo, hi)| [lo.to_array(), hi.to_array()])
+            .collect()
+    }
+
+    fn strands(&self, class: LevelClass) -> Strands<'a> {
+        let AssetSettings { curves, frame, .. } = *self.settings;
+        Strands::new(
+            self.parts.groom,
+            class.strands,
+            class.widening,
+            curves,
+            frame,
+        )
     }
 
     /// The color of the skin.
@@ -110,7 +179,7 @@ impl<'a> Builder<'_, 'a> {
         materials
     }
 
-    fn look(&self, class: usize) -> Option<&'a ClassLook> {
+    pub(super) fn look(&self, class: usize) -> Option<&'a ClassLook> {
         self.parts.looks.get(class)
     }
 
@@ -182,7 +251,7 @@ impl<'a> Builder<'_, 'a> {
         variant
     }
 
-    fn class(&self, class: usize) -> &'a HairClass {
+    pub(super) fn class(&self, class: usize) -> &'a HairClass {
         &self.parts.species.classes[class]
     }
 
@@ -216,23 +285,8 @@ impl<'a> Builder<'_, 'a> {
     }
 
     /// Gives curves their strands.
-    fn fill(
-        &self,
-        prim: &mut Prim<'a>,
-        class: usize,
-        LevelClass {
-            strands: index,
-            widening,
-        }: LevelClass,
-        purpose: Purpose,
-    ) {
-        let strands = Strands::new(
-            self.parts.groom,
-            index,
-            widening,
-            self.settings.curves,
-            self.settings.frame,
-        );
+    fn fill(&self, prim: &mut Prim<'a>, class: usize, of_class: LevelClass, purpose: Purpose) {
+        let strands = self.strands(of_class);
         let extent = Array::Vec3(Rows::of(strands.extent().to_vec()));
         prim.set("float3[]", "extent", extent.into());
         prim.set("int[]", "curveVertexCounts", strands.counts().into());
@@ -250,107 +304,6 @@ impl<'a> Builder<'_, 'a> {
         }
         self.strand_columns(prim, &strands, class, purpose);
         self.point_columns(prim, &strands, class);
-    }
-
-    /// Attributes that a strand has once.
-    fn strand_columns(
-        &self,
-        prim: &mut Prim<'a>,
-        strands: &Strands<'a>,
-        class: usize,
-        purpose: Purpose,
-    ) {
-        let (groom, profile) = (self.parts.groom, &self.settings.profile);
-        let uv: Value<'a> = Array::Vec2(strands.uniform(|i| groom.root_uv[i].to_array())).into();
-        for (column, name) in [
-            (Column::RootUv, "st"),
-            (Column::GroomRootUv, "groom_root_uv"),
-            (Column::SurfaceUv, "surface_uv_coordinate"),
-        ] {
-            if profile.wants(column) {
-                prim.primvar("texCoord2f[]", name, "uniform", uv.clone());
-            }
-        }
-        if profile.wants(Column::SkinPrim) {
-            let triangle = strands.uniform(|i| groom.root_triangle[i] as i32);
-            prim.primvar("int[]", "skinprim", "uniform", Array::Int(triangle).into());
-            let place = strands.uniform(|i| groom.root_barycentric[i].extend(0.0).to_array());
-            prim.primvar(
-                "float3[]",
-                "skinprimuv",
-                "uniform",
-                Array::Vec3(place).into(),
-            );
-        }
-        let id: Value<'a> = Array::Int(strands.uniform(|i| groom.id[i] as i32)).into();
-        for (column, name) in [(Column::CurveId, "curve_id"), (Column::GroomId, "groom_id")] {
-            if profile.wants(column) {
-                prim.primvar("int[]", name, "uniform", id.clone());
-            }
-        }
-        if profile.wants(Column::GroomGroup) {
-            let group = strands.uniform(move |_| class as i32);
-            prim.primvar(
-                "int[]",
-                "groom_group_id",
-                "uniform",
-                Array::Int(group).into(),
-            );
-            let name = Value::Strings(vec![self.class(class).name.clone()]);
-            prim.primvar("string[]", "groom_group_name", "constant", name);
-        }
-        if profile.wants(Column::GroomGuide) {
-            let flag = i32::from(purpose == Purpose::Guide);
-            let guide = strands.uniform(move |_| flag);
-            prim.primvar("int[]", "groom_guide", "uniform", Array::Int(guide).into());
-        }
-    }
-
-    /// Attributes that change along a strand.
-    fn point_columns(&self, prim: &mut Prim<'a>, strands: &Strands<'a>, class: usize) {
-        let (groom, profile) = (self.parts.groom, &self.settings.profile);
-        let hair = self.class(class);
-        let zones = Arc::new(Zones::new(hair, &hair.pigment, self.look(class)));
-        let of = Arc::clone(&zones);
-        let color: Value<'a> = strands
-            .vertex3(move |i, out| of.along(groom, i, |dye| dye.color, out))
-            .into();
-        for (column, kind, name) in [
-            (Column::DisplayColor, "color3f[]", "displayColor"),
-            (Column::GroomColor, "float3[]", "groom_color"),
-        ] {
-            if profile.wants(column) {
-                prim.primvar(kind, name, "vertex", color.clone());
-            }
-        }
-        if profile.wants(Column::Melanin) {
-            self.melanin(prim, strands, &zones);
-        }
-        if profile.wants(Column::Absorption) && !zones.is_even() {
-            let of = Arc::clone(&zones);
-            let absorption =
-                strands.vertex3(move |i, out| of.along(groom, i, |dye| dye.absorption, out));
-            prim.primvar("vector3f[]", "absorption", "vertex", absorption.into());
-        }
-    }
-
-    fn melanin(&self, prim: &mut Prim<'a>, strands: &Strands<'a>, zones: &Arc<Zones>) {
-        let groom = self.parts.groom;
-        for (part, name) in ["eumelanin", "pheomelanin"].into_iter().enumerate() {
-            if zones.is_even() {
-                let value = zones.values[0].melanin[part];
-                let value = Array::Float(Rows::of(vec![value]));
-                prim.primvar("float[]", name, "constant", value.into());
-                continue;
-            }
-            let of = Arc::clone(zones);
-            let values = strands.vertex(move |i, out: &mut Vec<f32>| {
-                let mut both = Vec::new();
-                of.along(groom, i, |dye| dye.melanin, &mut both);
-                out.extend(both.iter().map(|m| m[part]));
-            });
-            prim.primvar("float[]", name, "vertex", Array::Float(values).into());
-        }
     }
 }
 

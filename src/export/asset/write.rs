@@ -1,7 +1,7 @@
 //! Writing an asset, and how large it will be.
 
-use super::{AssetSettings, Column, Parts, check, tree};
-use crate::export::usd::{self, Form};
+use super::{AssetSettings, Column, Layout, Parts, check, tree};
+use crate::export::usd::{self, Form, Layer};
 use crate::export::{ExportError, Format};
 use crate::io::{AtomicFile, FileError};
 use crate::progress::{Cancel, Progress};
@@ -54,7 +54,7 @@ pub fn estimate(
     (full as f64 * share) as u64 + skin as u64
 }
 
-/// Writes a groom as a component asset into one file, whole or not at all.
+/// Writes a groom as a component asset, every file of it whole or not at all.
 ///
 /// The bytes are a function of the arguments alone, not of the number of threads.
 ///
@@ -78,28 +78,49 @@ pub fn write(
     };
     check(parts.groom)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let layer = tree::layer(parts, settings, &name);
-    let groom = parts.groom;
-    let size = [groom.strands(), groom.points.len()];
+    let job = Job { progress, cancel };
+    let size = [parts.groom.strands(), parts.groom.points.len()];
     let size = estimate(parts.skin, size, parts.levels.len(), settings);
-    let size = match form {
-        Form::Text => 4 * size,
-        Form::Binary => size,
-    };
-    progress.begin("writing", size, "bytes");
-    let mut file = AtomicFile::create(path)?;
-    let written = usd::write(&layer, form, &mut file, &mut |bytes| {
-        progress.advance(bytes);
-        if cancel.is_cancelled() {
-            return Err(io::Error::other("stopped"));
-        }
-        Ok(())
-    });
-    progress.finish();
-    match written {
-        Err(_) if cancel.is_cancelled() => return Err(ExportError::Cancelled),
-        Err(error) => return Err(FileError::new("write", path, error).into()),
-        Ok(()) => file.commit()?,
+    if settings.layout == Layout::Single {
+        let size = size * if form == Form::Text { 4 } else { 1 };
+        return job.write(path, &tree::layer(parts, settings, &name), form, size);
     }
-    Ok(())
+    // The payload first: what refers to it must not be there without it.
+    let payload = path.with_extension("payload.usdc");
+    let payload_name = payload.file_name().unwrap_or_default().to_string_lossy();
+    let layer = tree::layer(parts, settings, &payload_name);
+    job.write(&payload, &layer, Form::Binary, size)?;
+    let interface = tree::interface(parts, settings, &name, &payload_name);
+    job.write(path, &interface, form, 10_000)
+}
+
+struct Job<'j> {
+    progress: &'j dyn Progress,
+    cancel: &'j Cancel,
+}
+
+impl Job<'_> {
+    fn write(
+        &self,
+        path: &Path,
+        layer: &Layer<'_>,
+        form: Form,
+        size: u64,
+    ) -> Result<(), ExportError> {
+        self.progress.begin("writing", size, "bytes");
+        let mut file = AtomicFile::create(path)?;
+        let written = usd::write(layer, form, &mut file, &mut |bytes| {
+            self.progress.advance(bytes);
+            if self.cancel.is_cancelled() {
+                return Err(io::Error::other("stopped"));
+            }
+            Ok(())
+        });
+        self.progress.finish();
+        match written {
+            Err(_) if self.cancel.is_cancelled() => Err(ExportError::Cancelled),
+            Err(error) => Err(FileError::new("write", path, error).into()),
+            Ok(()) => Ok(file.commit()?),
+        }
+    }
 }
