@@ -85,7 +85,7 @@ pub enum VolumeError {
         limit: f64,
     },
     /// Nothing to fill voxels with.
-    #[error("there are no strands to fill voxels with")]
+    #[error("there are no strands to fill voxels with, or none of them has a length")]
     Empty,
     /// The grids could not be written.
     #[error(transparent)]

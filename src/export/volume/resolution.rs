@@ -35,13 +35,16 @@ pub fn statistics(curves: &Curves<'_>, cancel: &Cancel) -> Result<Statistics, Vo
     let (mut length, mut area) = (0.0, 0.0);
     for curve in 0..curves.len() {
         for i in curves.spans(curve) {
-            let way = f64::from(curves.points[i].distance(curves.points[i + 1]));
+            let [a, b] = [i, i + 1].map(|k| curves.points[k].as_dvec3());
+            let way = a.distance(b);
             length += way;
             area += way * 0.5 * f64::from(curves.widths[i] + curves.widths[i + 1]);
         }
     }
-    // Also not a number.
-    if !(length > 0.0 && length.is_finite()) {
+    if let Some(&at) = curves.points.iter().find(|p| !p.is_finite()) {
+        return Err(VolumeError::TooFar { at, voxel: 0.0 });
+    }
+    if length == 0.0 {
         return Err(VolumeError::Empty);
     }
     let mean_length = length / curves.len() as f64;
