@@ -29,6 +29,7 @@ pub mod io;
 pub mod math;
 pub mod mesh_file;
 pub mod micrograph;
+mod pages;
 pub mod progress;
 pub mod render;
 pub mod sampling;

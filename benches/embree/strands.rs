@@ -17,7 +17,7 @@
 mod clock;
 
 use clock::thread_seconds;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use std::hint::black_box;
 use std::io::{BufRead, BufReader, BufWriter, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -183,16 +183,16 @@ fn sphere(rng: &mut Rng) -> Vec3 {
 
 /// Writes what both sides trace and gives the first joint of each segment.
 fn write_scene(path: &str, strands: &Strands, sets: &[RaySet]) -> Result<Vec<u32>, Failure> {
-    let joints = strands.joints();
+    let joints: Vec<(u32, Vec4)> = strands.joints().collect();
     let segments: Vec<u32> = (1..joints.len())
-        .filter(|&j| strands.strand_of_joint(j - 1) == strands.strand_of_joint(j))
+        .filter(|&j| joints[j - 1].0 == joints[j].0)
         .map(|j| j as u32 - 1)
         .collect();
     let mut out = BufWriter::new(std::fs::File::create(path)?);
     for n in [joints.len(), segments.len(), sets.len()] {
         out.write_all(&(n as u32).to_le_bytes())?;
     }
-    for x in joints.iter().flat_map(|j| j.to_array()) {
+    for x in joints.iter().flat_map(|j| j.1.to_array()) {
         out.write_all(&x.to_le_bytes())?;
     }
     for j in &segments {
@@ -219,6 +219,7 @@ fn cross_check(
 ) -> Result<(), Failure> {
     embree.ask(index, "flat", "write", 1)?;
     let results = std::fs::read(results)?;
+    let joints: Vec<(u32, Vec4)> = strands.joints().collect();
     let (mut same, mut near, mut start) = (0, 0, 0);
     for (ray, result) in set.moved.iter().zip(results.chunks_exact(8)) {
         let word = |k: usize| [0, 1, 2, 3].map(|i| result[k + i]);
@@ -232,9 +233,8 @@ fn cross_check(
             (Some(hit), Some(_)) if close(hit.t) => near += 1,
             (Some(hit), _) => {
                 // Embree takes no hit nearer than a width.
-                let joint = strands.joints()[hit.segment as usize];
-                let next = strands.joints()[hit.segment as usize + 1];
-                let width = 2.0 * joint.w.max(next.w) * (1.0 + 1e-5);
+                let [a, b] = [0, 1].map(|k| joints[hit.segment as usize + k].1.w);
+                let width = 2.0 * a.max(b) * (1.0 + 1e-5);
                 start += u32::from(hit.t <= width);
             }
             _ => {}

@@ -4,7 +4,7 @@ use crate::bsdf::{Bsdf, Place};
 use crate::color::Rgb;
 use crate::math::frame::strand_frame;
 use crate::sampling::concentric_disk;
-use crate::scene::{Hit, Leaving, Ray, Scene, Segment, StrandHit, Strands};
+use crate::scene::{Hit, Leaving, Ray, Scene, StrandHit, Strands};
 use glam::{Mat3, Vec3, Vec4Swizzles};
 use std::f32::consts::{FRAC_1_PI, PI};
 
@@ -173,11 +173,7 @@ impl<'a> Scatter<'a> {
 
 /// Where a ray meets a strand across its width, -1..1 in radii, positive toward `tangent x viewer`.
 fn offset_across(strands: &Strands, hit: &StrandHit, ray: &Ray) -> f32 {
-    let joint = hit.segment as usize;
-    let segment = Segment {
-        root: strands.joints()[joint],
-        tip: strands.joints()[joint + 1],
-    };
+    let segment = strands.segment(hit);
     let Some((_, along)) = segment.intersect(ray.origin, ray.dir) else {
         return 0.0;
     };

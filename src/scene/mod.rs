@@ -6,6 +6,7 @@ mod flatten;
 mod ribbon;
 mod strands;
 mod surface;
+mod tree;
 
 pub use crate::accel::Ray;
 
@@ -247,7 +248,7 @@ impl Scene {
 
     /// Points that have to be in the picture.
     fn subject(&self) -> Vec<Vec3> {
-        let strands = self.strands.joints().iter().map(|j| j.xyz());
+        let strands = self.strands.joints().map(|(_, j)| j.xyz());
         let skin = self
             .surface
             .iter()

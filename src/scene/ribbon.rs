@@ -5,6 +5,7 @@
 //! away, so nothing but the distance between ray and axis matters; a round tube would ask for a
 //! quadratic and give the same picture.
 
+use super::tree::Lanes;
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
 /// Two ends of a segment, scene units (millimeters): xyz the axis, w half the width.
@@ -43,6 +44,63 @@ impl Segment {
         let distance2 = (flat_root + along * flat_axis).length_squared();
         (distance2 <= radius * radius).then_some((depth + along * slope, along))
     }
+}
+
+/// Eight segments, lane by lane: x, y and z of both ends, and half widths.
+pub(super) struct Eight<L: Lanes> {
+    pub(super) root: ([L::F; 3], L::F),
+    pub(super) tip: ([L::F; 3], L::F),
+}
+
+impl<L: Lanes> Eight<L> {
+    /// Which of them a ray meets ahead of its start and up to `limit`, a bit each, and where: to the bit what
+    /// [`Segment::intersect`] says.
+    #[inline(always)]
+    pub(super) fn intersect(&self, origin: Vec3, dir: Vec3, limit: f32) -> (u32, L::F) {
+        let (root, tip) = (&self.root, &self.tip);
+        let dir = [L::splat(dir.x), L::splat(dir.y), L::splat(dir.z)];
+        let origin = [L::splat(origin.x), L::splat(origin.y), L::splat(origin.z)];
+        let to_root = minus::<L>(&root.0, &origin);
+        let axis = minus::<L>(&tip.0, &root.0);
+        let (depth, slope) = (dot::<L>(&to_root, &dir), dot::<L>(&axis, &dir));
+        let flat_root = minus::<L>(&to_root, &times::<L>(depth, &dir));
+        let flat_axis = minus::<L>(&axis, &times::<L>(slope, &dir));
+        let least = L::splat(f32::MIN_POSITIVE);
+        let against = L::sub(L::splat(0.0), dot::<L>(&flat_root, &flat_axis));
+        let along = L::div(against, L::max(dot::<L>(&flat_axis, &flat_axis), least));
+        let along = L::min(L::max(along, L::splat(0.0)), L::splat(1.0));
+        let radius = L::add(root.1, L::mul(along, L::sub(tip.1, root.1)));
+        let off = plus::<L>(&flat_root, &times::<L>(along, &flat_axis));
+        let t = L::add(depth, L::mul(along, slope));
+        let near = L::le(dot::<L>(&off, &off), L::mul(radius, radius));
+        (
+            near & L::le(t, L::splat(limit)) & !L::le(t, L::splat(0.0)),
+            t,
+        )
+    }
+}
+
+// Functions rather than closures, which would not be compiled for the processor that their caller is for.
+
+#[inline(always)]
+fn dot<L: Lanes>(a: &[L::F; 3], b: &[L::F; 3]) -> L::F {
+    let xy = L::add(L::mul(a[0], b[0]), L::mul(a[1], b[1]));
+    L::add(xy, L::mul(a[2], b[2]))
+}
+
+#[inline(always)]
+fn plus<L: Lanes>(a: &[L::F; 3], b: &[L::F; 3]) -> [L::F; 3] {
+    [L::add(a[0], b[0]), L::add(a[1], b[1]), L::add(a[2], b[2])]
+}
+
+#[inline(always)]
+fn minus<L: Lanes>(a: &[L::F; 3], b: &[L::F; 3]) -> [L::F; 3] {
+    [L::sub(a[0], b[0]), L::sub(a[1], b[1]), L::sub(a[2], b[2])]
+}
+
+#[inline(always)]
+fn times<L: Lanes>(t: L::F, b: &[L::F; 3]) -> [L::F; 3] {
+    [L::mul(t, b[0]), L::mul(t, b[1]), L::mul(t, b[2])]
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
-//! All strands of a scene as segments behind an acceleration structure.
+//! All strands of a scene as segments behind a tree.
 
 use super::SceneError;
 use super::flatten::flatten;
 use super::ribbon::Segment;
-use crate::accel::{Accel, LIMIT, Ray, hash_bits};
+use super::tree::{Found, Ignored, Run, Tree};
+use crate::accel::{LIMIT, Ray, hash_bits};
 use crate::groom::Groom;
 use glam::{Quat, Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
@@ -39,16 +40,12 @@ pub struct StrandHit {
 
 /// Where a scattered ray starts, so that it does not meet the strand it is leaving.
 #[derive(Clone, Copy, Debug)]
-pub struct Leaving {
-    strand: u32,
-    /// Distance along the ray within which the strand itself is not there.
-    clear: f32,
-}
+pub struct Leaving(Ignored);
 
 impl Leaving {
     /// Distance along the ray within which the strand that it leaves is not there, millimeters.
     pub fn clear(&self) -> f32 {
-        self.clear
+        self.0.clear
     }
 }
 
@@ -62,28 +59,32 @@ struct Strand {
     root_uv: Vec2,
 }
 
-/// Strands ready for tracing. Segments are numbered by the joint they start at, in strand order.
+/// Runs between two entries of [`Strands::strand_of`].
+const STRIDE: usize = 32;
+
+/// Strands ready for tracing. Joints are numbered in the order of strands, root first, and segments by the
+/// joint they start at. Where joints are is known to the tree alone.
 pub struct Strands {
-    /// Joints of all strands in order, half width in w.
-    joints: Vec<Vec4>,
+    /// First joint of each strand, and their number.
+    first_joint: Vec<u32>,
+    /// First run of each strand, and their number.
+    first_run: Vec<u32>,
+    /// The strand of every so many runs.
+    strand_of: Vec<u32>,
     /// Position along the strand of each joint, 0..1.
     at: Vec<f32>,
-    /// Strand of each joint.
-    strand_of: Vec<u32>,
     strands: Vec<Strand>,
-    /// Segments in traversal order and the joint each starts at.
-    segments: Vec<Segment>,
-    first_joint: Vec<u32>,
     /// Major axis of the section at each joint; empty if nobody asks for it.
     sides: Vec<Vec3>,
-    accel: Accel,
+    tree: Tree,
+    segments: usize,
 }
 
 impl Strands {
     /// Cuts and sorts a groom.
     ///
-    /// * Strands without length are left out. Segments that coincide to the last bit are kept once:
-    ///   the one of the lowest strand, the only one a ray could have met.
+    /// * Strands without length are left out. Where strands coincide to the last bit the lowest is there, the only
+    ///   one a ray could have met.
     pub fn build(groom: &Groom) -> Result<Self, SceneError> {
         check(groom)?;
         let count = groom.strands();
@@ -95,25 +96,34 @@ impl Strands {
         for batch in batches {
             all.joints.extend(batch.joints);
             all.at.extend(batch.at);
-            all.strand_of.extend(batch.strand_of);
+            all.count.extend(batch.count);
             all.length_mm.extend(batch.length_mm);
         }
-        let first_joint = starts(&all);
-        let segment_at = |j: u32| Segment {
-            root: all.joints[j as usize],
-            tip: all.joints[j as usize + 1],
-        };
-        let boxes: Vec<(Vec3, Vec3)> = first_joint
-            .iter()
-            .map(|&j| segment_at(j).bounds())
-            .collect();
-        let accel = Accel::build(&boxes)?;
-        let first_joint: Vec<u32> = accel
-            .order()
-            .iter()
-            .map(|&i| first_joint[i as usize])
-            .collect();
-        let segments = first_joint.iter().map(|&j| segment_at(j)).collect();
+        let joints = all.joints.iter();
+        if let Some(far) = joints.copied().find(|j| !(j.abs().max_element() <= LIMIT)) {
+            return Err(SceneError::Coordinates { at: far.xyz() });
+        }
+        let (mut first_joint, mut first_run) = (vec![0], vec![0]);
+        let (mut runs, mut strand_of) = (Vec::new(), Vec::new());
+        let mut joint = 0;
+        for (strand, &count) in all.count.iter().enumerate() {
+            for first in (0..count.saturating_sub(1)).step_by(2) {
+                if runs.len().is_multiple_of(STRIDE) {
+                    strand_of.push(strand as u32);
+                }
+                runs.push(Run {
+                    joint: joint + first,
+                    segments: (count - 1 - first).min(2) as u8,
+                });
+            }
+            joint += count;
+            first_joint.push(joint);
+            first_run.push(runs.len() as u32);
+        }
+        let copies = copies(&all.joints, &runs);
+        let tree = Tree::build(&all.joints, &runs, &copies);
+        let copied: usize = copies.iter().map(|&(r, _)| segments_of(&runs, r)).sum();
+        let segments = runs.iter().map(|r| usize::from(r.segments)).sum::<usize>() - copied;
         let strands = (0..count)
             .map(|i| Strand {
                 class: groom.class[i],
@@ -124,14 +134,14 @@ impl Strands {
             })
             .collect();
         Ok(Self {
-            joints: all.joints,
-            at: all.at,
-            strand_of: all.strand_of,
-            strands,
-            segments,
             first_joint,
+            first_run,
+            strand_of,
+            at: all.at,
+            strands,
             sides: Vec::new(),
-            accel,
+            tree,
+            segments,
         })
     }
 
@@ -139,50 +149,76 @@ impl Strands {
     /// on they turn as the tangent does and no further (parallel transport). Strands of which the groom
     /// does not say how they lie get any side.
     pub fn carry_sides(&mut self, groom: &Groom) {
-        let mut sides = vec![Vec3::ZERO; self.joints.len()];
-        let mut last: Option<(u32, Vec3, Vec3)> = None;
-        for (joint, side) in sides.iter_mut().enumerate() {
-            let strand = self.strand_of[joint];
-            let tangent = self.tangent_at_joint(joint);
-            let carried = match last {
-                Some((of, before, side)) if of == strand => {
-                    Quat::from_rotation_arc(before, tangent) * side
-                }
-                _ => {
-                    let normal = groom.normal.get(strand as usize).copied();
-                    normal.unwrap_or_default().cross(tangent)
-                }
-            };
-            *side = across(carried, tangent);
-            last = Some((strand, tangent, *side));
+        let mut sides = Vec::with_capacity(self.at.len());
+        for strand in 0..self.strands.len() as u32 {
+            let mut last: Option<(Vec3, Vec3)> = None;
+            for joint in 0..self.joints_of(strand) {
+                let tangent = self.tangent_at_joint(strand, joint);
+                let carried = match last {
+                    Some((before, side)) => Quat::from_rotation_arc(before, tangent) * side,
+                    None => {
+                        let normal = groom.normal.get(strand as usize).copied();
+                        normal.unwrap_or_default().cross(tangent)
+                    }
+                };
+                let side = across(carried, tangent);
+                sides.push(side);
+                last = Some((tangent, side));
+            }
         }
         self.sides = sides;
     }
 
-    /// Unit tangent at a joint.
-    fn tangent_at_joint(&self, joint: usize) -> Vec3 {
-        let next = self.strand_of.get(joint + 1);
-        if next == Some(&self.strand_of[joint]) {
-            self.tangent(joint, 0.0)
+    /// Unit tangent at a joint of a strand.
+    fn tangent_at_joint(&self, strand: u32, joint: u32) -> Vec3 {
+        if joint + 1 < self.joints_of(strand) {
+            self.tangent(strand, joint, 0.0)
         } else {
             // The last of its strand, which has two at least.
-            self.tangent(joint - 1, 1.0)
+            self.tangent(strand, joint - 1, 1.0)
         }
     }
 
     /// Number of segments that rays are tested against.
     pub fn segments(&self) -> usize {
-        self.segments.len()
+        self.segments
     }
 
-    /// Joints of all strands, millimeters, half width in w.
-    pub fn joints(&self) -> &[Vec4] {
-        &self.joints
+    /// Joints of all strands in order with the strand, by its index in the groom, that each belongs to:
+    /// millimeters, half width in w.
+    pub fn joints(&self) -> impl Iterator<Item = (u32, Vec4)> + '_ {
+        let strands = 0..self.strands.len() as u32;
+        strands.flat_map(move |s| (0..self.joints_of(s)).map(move |j| (s, self.joint(s, j))))
     }
 
-    /// The strand, by its index in the groom, that a joint belongs to.
-    pub fn strand_of_joint(&self, joint: usize) -> u32 {
-        self.strand_of[joint]
+    /// Number of joints of a strand; none if it has no length.
+    fn joints_of(&self, strand: u32) -> u32 {
+        self.first_joint[strand as usize + 1] - self.first_joint[strand as usize]
+    }
+
+    /// A joint of a strand, counted from the root.
+    fn joint(&self, strand: u32, joint: u32) -> Vec4 {
+        let first = self.first_run[strand as usize];
+        let last = self.first_run[strand as usize + 1] - 1;
+        let run = (first + joint / 2).min(last);
+        self.tree.joint(run, (joint - 2 * (run - first)) as usize)
+    }
+
+    /// The segment of a strand that starts at a joint, to the bit as rays meet it: where two runs join, each has the
+    /// joint rounded in its own way.
+    pub(super) fn piece(&self, strand: u32, joint: u32) -> Segment {
+        let run = self.first_run[strand as usize] + joint / 2;
+        let half = joint as usize % 2;
+        Segment {
+            root: self.tree.joint(run, half),
+            tip: self.tree.joint(run, half + 1),
+        }
+    }
+
+    /// The segment that was met.
+    pub fn segment(&self, hit: &StrandHit) -> Segment {
+        let first = self.first_joint[hit.strand as usize];
+        self.piece(hit.strand, hit.segment - first)
     }
 
     /// Stable id of a strand.
@@ -199,38 +235,24 @@ impl Strands {
     ///
     /// * `leaving`: the strand the ray starts on, if any.
     pub fn closest(&self, ray: &Ray, limit: f32, leaving: Option<Leaving>) -> Option<StrandHit> {
-        let (prim, t) = self.accel.closest(ray, limit, |prim, best| {
-            self.test(prim, ray, best, leaving.as_ref())
-        })?;
-        self.describe(prim, ray, t)
+        let found = self.tree.closest(ray, limit, leaving.map(|l| l.0))?;
+        self.describe(&found, ray)
     }
 
     /// Whether any strand lies in front of `limit`.
     pub fn occluded(&self, ray: &Ray, limit: f32, leaving: Option<Leaving>) -> bool {
-        self.accel.any(ray, limit, |prim, best| {
-            self.test(prim, ray, best, leaving.as_ref()).is_some()
-        })
+        self.tree.any(ray, limit, leaving.map(|l| l.0))
     }
 
-    #[inline(always)]
-    fn test(&self, prim: usize, ray: &Ray, best: f32, leaving: Option<&Leaving>) -> Option<f32> {
-        let (t, _) = self.segments[prim].intersect(ray.origin, ray.dir)?;
-        if !(t > 0.0 && t <= best) {
-            return None;
+    fn describe(&self, found: &Found, ray: &Ray) -> Option<StrandHit> {
+        let mut strand = self.strand_of[found.run as usize / STRIDE];
+        while self.first_run[strand as usize + 1] <= found.run {
+            strand += 1;
         }
-        if let Some(own) = leaving
-            && t < own.clear
-            && self.strand_of[self.first_joint[prim] as usize] == own.strand
-        {
-            return None;
-        }
-        Some(t)
-    }
-
-    fn describe(&self, prim: usize, ray: &Ray, t: f32) -> Option<StrandHit> {
-        let (_, along) = self.segments[prim].intersect(ray.origin, ray.dir)?;
-        let joint = self.first_joint[prim] as usize;
-        let strand = self.strand_of[joint];
+        let local = 2 * (found.run - self.first_run[strand as usize]) + found.half;
+        let piece = self.piece(strand, local);
+        let (_, along) = piece.intersect(ray.origin, ray.dir)?;
+        let joint = (self.first_joint[strand as usize] + local) as usize;
         let Strand {
             class,
             coat,
@@ -238,13 +260,13 @@ impl Strands {
             ..
         } = self.strands[strand as usize];
         let at = self.at[joint] + along * (self.at[joint + 1] - self.at[joint]);
-        let tangent = self.tangent(joint, along);
+        let tangent = self.tangent(strand, local, along);
         let side = match self.sides.get(joint..joint + 2) {
             Some(&[a, b]) => across(a.lerp(b, along), tangent),
             _ => Vec3::ZERO,
         };
         Some(StrandHit {
-            t,
+            t: found.t,
             segment: joint as u32,
             strand,
             class,
@@ -262,31 +284,29 @@ impl Strands {
     /// a to the tangent is two half widths away from a straight strand after `width / sin a`, and
     /// cannot meet it beyond; a bent strand may be met again farther on, as it should.
     pub fn leave(&self, hit: &StrandHit, dir: Vec3) -> Leaving {
-        let joint = hit.segment as usize;
-        let width = 2.0 * self.joints[joint].w.max(self.joints[joint + 1].w);
-        let axis = (self.joints[joint + 1] - self.joints[joint]).xyz();
+        let strand = hit.strand as usize;
+        let Segment { root, tip } = self.segment(hit);
+        let width = 2.0 * root.w.max(tip.w);
+        let axis = (tip - root).xyz();
         let sin = (axis.cross(dir).length() / axis.length()).max(1e-6);
-        Leaving {
-            strand: hit.strand,
+        Leaving(Ignored {
+            first: self.first_run[strand],
+            end: self.first_run[strand + 1],
             clear: width / sin,
-        }
+        })
     }
 
-    fn tangent(&self, joint: usize, along: f32) -> Vec3 {
-        let strand = self.strand_of[joint];
-        let chord = |j: usize| {
-            (self.joints[j + 1] - self.joints[j])
-                .xyz()
-                .normalize_or_zero()
-        };
-        let own = chord(joint);
-        let same = |j: usize| self.strand_of.get(j) == Some(&strand);
+    fn tangent(&self, strand: u32, joint: u32, along: f32) -> Vec3 {
+        let at = |j: u32| self.joint(strand, j).xyz();
+        let chord = |a: Vec3, b: Vec3| (b - a).normalize_or_zero();
+        let (root, tip) = (at(joint), at(joint + 1));
+        let own = chord(root, tip);
         let before = match joint.checked_sub(1) {
-            Some(j) if same(j) => (chord(j) + own).normalize_or(own),
-            _ => own,
+            Some(j) => (chord(at(j), root) + own).normalize_or(own),
+            None => own,
         };
-        let after = if same(joint + 2) {
-            (chord(joint + 1) + own).normalize_or(own)
+        let after = if joint + 2 < self.joints_of(strand) {
+            (chord(tip, at(joint + 2)) + own).normalize_or(own)
         } else {
             own
         };
@@ -306,7 +326,8 @@ fn across(v: Vec3, tangent: Vec3) -> Vec3 {
 struct Batch {
     joints: Vec<Vec4>,
     at: Vec<f32>,
-    strand_of: Vec<u32>,
+    /// For each strand.
+    count: Vec<u32>,
     length_mm: Vec<f32>,
 }
 
@@ -323,6 +344,7 @@ fn cut(groom: &Groom, strands: std::ops::Range<usize>) -> Batch {
         flatten(&control, &mut joints);
         if joints.len() < 2 {
             out.length_mm.push(0.0);
+            out.count.push(0);
             continue;
         }
         let start = out.at.len();
@@ -336,31 +358,41 @@ fn cut(groom: &Groom, strands: std::ops::Range<usize>) -> Batch {
             *at /= length as f32;
         }
         out.length_mm.push(length as f32);
-        out.strand_of.resize(out.at.len(), strand as u32);
+        out.count.push(joints.len() as u32);
         out.joints.extend_from_slice(&joints);
     }
     out
 }
 
-/// Joints at which a segment starts, without exact duplicates, in strand order.
-fn starts(all: &Batch) -> Vec<u32> {
-    let key = |j: u32| {
-        let (a, b) = (all.joints[j as usize], all.joints[j as usize + 1]);
-        [a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w].map(f32::to_bits)
+fn segments_of(runs: &[Run], run: u32) -> usize {
+    runs[run as usize].segments.into()
+}
+
+/// Runs that are exact copies of lower ones, in order, each with the lowest.
+fn copies(joints: &[Vec4], runs: &[Run]) -> Vec<(u32, u32)> {
+    let key = |r: u32| {
+        let run = runs[r as usize];
+        let at = |i: u8| joints[run.joint as usize + i.min(run.segments) as usize];
+        [at(0), at(1), at(2)].map(|j| j.to_array().map(f32::to_bits))
     };
-    let last = all.joints.len().saturating_sub(1) as u32;
-    let mut hashed: Vec<(u64, u32)> = (0..last)
+    let mut hashed: Vec<(u64, u32)> = (0..runs.len() as u32)
         .into_par_iter()
-        .filter(|&j| all.strand_of[j as usize] == all.strand_of[j as usize + 1])
-        .map(|j| (hash_bits(&key(j)), j))
+        .map(|r| (hash_bits(key(r).as_flattened()), r))
         .collect();
     hashed.par_sort_unstable();
-    // Equal segments have equal hashes and the lowest comes first; two different ones with one hash
+    // Equal runs have equal hashes and the lowest comes first; two different ones with one hash
     // are both kept.
-    hashed.dedup_by(|later, kept| later.0 == kept.0 && key(later.1) == key(kept.1));
-    let mut starts: Vec<u32> = hashed.into_iter().map(|(_, j)| j).collect();
-    starts.par_sort_unstable();
-    starts
+    let mut copies = Vec::new();
+    for same in hashed.chunk_by(|a, b| a.0 == b.0) {
+        let lowest = same[0].1;
+        let others = same[1..].iter().map(|&(_, r)| r);
+        let equal = others.filter(|&r| {
+            segments_of(runs, r) == segments_of(runs, lowest) && key(r) == key(lowest)
+        });
+        copies.extend(equal.map(|r| (r, lowest)));
+    }
+    copies.sort_unstable();
+    copies
 }
 
 fn check(groom: &Groom) -> Result<(), SceneError> {

@@ -5,16 +5,15 @@
 mod layout;
 mod leaf;
 mod node;
-mod pages;
 
 use super::OVERLAP;
 use super::solid::Bound;
 use crate::accel::{AccelError, binary_tree};
 use crate::fiber::{Part, Region};
+use crate::pages::Table;
 use glam::{DVec3, Vec3, Vec4};
 use leaf::{Leaf, SIZE};
 use node::Node;
-use pages::Table;
 use std::cell::RefCell;
 
 /// Room for single precision, relative to the longest way of a ray: half a rounding for each of up to

@@ -9,7 +9,7 @@ const LARGE: usize = 2 << 20;
 
 /// A table that does not grow.
 #[derive(Clone, Debug)]
-pub(super) struct Table<T> {
+pub(crate) struct Table<T> {
     /// Fillers up to the first large page, then the table.
     all: Vec<T>,
     first: usize,
@@ -25,7 +25,7 @@ impl<T> Default for Table<T> {
 }
 
 impl<T: Clone> Table<T> {
-    pub(super) fn new(entries: Vec<T>) -> Self {
+    pub(crate) fn new(entries: Vec<T>) -> Self {
         let each = size_of::<T>();
         if entries.is_empty() || each * entries.len() < LARGE / 4 {
             return Self {
@@ -47,15 +47,15 @@ impl<T: Clone> Table<T> {
 }
 
 impl<T> Table<T> {
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.all.len() - self.first
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    pub(super) fn entries_mut(&mut self) -> &mut [T] {
+    pub(crate) fn entries_mut(&mut self) -> &mut [T] {
         &mut self.all[self.first..]
     }
 }

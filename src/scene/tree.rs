@@ -1,0 +1,236 @@
+//! A tree over strands: nodes of eight boxes, leaves of eight segments.
+//!
+//! A search waits for memory more than for anything else, so everything is small: a node and a leaf are two lines of a
+//! cache each, and a leaf holds all that decides what a ray meets. The answer does not depend on the
+//! shape of the tree, nor on the processor.
+
+mod build;
+mod lanes;
+mod leaf;
+mod node;
+
+pub(super) use lanes::Lanes;
+
+use crate::accel::Ray;
+use crate::pages::Table;
+use glam::Vec4;
+use lanes::Plain;
+use leaf::Leaf;
+use node::{CHILDREN, LEAF, Line, Node, PAIR};
+
+/// One or two segments of a strand, one after the other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run {
+    /// The joint at which it begins.
+    pub(super) joint: u32,
+    pub(super) segments: u8,
+}
+
+/// Nodes one below the other at most; below [`build::EVEN`] halves are even.
+const DEPTH: usize = 36;
+/// References set aside at most.
+const STACK: usize = DEPTH * (CHILDREN - 1) + 1;
+
+/// Runs that are not there on the first bit of a ray: from `first` to before `end`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ignored {
+    pub(super) first: u32,
+    pub(super) end: u32,
+    /// Distance along the ray.
+    pub(super) clear: f32,
+}
+
+/// A segment met by a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Found {
+    pub(super) t: f32,
+    pub(super) run: u32,
+    /// First or second segment of the run.
+    pub(super) half: u32,
+}
+
+/// Runs behind boxes.
+pub(super) struct Tree {
+    nodes: Table<Node>,
+    leaves: Table<Leaf>,
+    /// Leaf of each run and its place there.
+    places: Vec<u32>,
+}
+
+impl Tree {
+    /// * `joints`: of the scene, half width in w; finite and at most a kilometer away.
+    /// * `runs`: at most 2^27. * `copies`: those that are left out, in order, each with the one that it is like.
+    pub(super) fn build(joints: &[Vec4], runs: &[Run], copies: &[(u32, u32)]) -> Self {
+        let mut copied = copies.iter().map(|&(run, _)| run).peekable();
+        let kept = (0..runs.len() as u32).filter(|run| copied.next_if_eq(run).is_none());
+        let draft = build::build(joints, runs, kept.collect());
+        let mut places = vec![0; runs.len()];
+        for (l, leaf) in draft.leaves.iter().enumerate() {
+            for (k, run) in leaf.numbers() {
+                places[run as usize] = (l * leaf::RUNS + k) as u32;
+            }
+        }
+        for &(run, like) in copies {
+            places[run as usize] = places[like as usize];
+        }
+        Self {
+            nodes: Table::new(draft.nodes),
+            leaves: Table::new(draft.leaves),
+            places,
+        }
+    }
+
+    /// The joint of a run, `0..=2`.
+    #[inline]
+    pub(super) fn joint(&self, run: u32, joint: usize) -> Vec4 {
+        let place = self.places[run as usize] as usize;
+        self.leaves[place / leaf::RUNS].joint(place % leaf::RUNS, joint)
+    }
+
+    /// The nearest segment up to `limit`; of equal distances the first segment.
+    pub(super) fn closest(&self, ray: &Ray, limit: f32, ignored: Option<Ignored>) -> Option<Found> {
+        self.search::<false>(ray, limit, ignored)
+    }
+
+    /// Whether any segment is met up to `limit`.
+    pub(super) fn any(&self, ray: &Ray, limit: f32, ignored: Option<Ignored>) -> bool {
+        self.search::<true>(ray, limit, ignored).is_some()
+    }
+
+    #[inline(always)]
+    fn search<const ANY: bool>(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        ignored: Option<Ignored>,
+    ) -> Option<Found> {
+        let line = Line {
+            origin: ray.origin,
+            dir: ray.dir,
+        };
+        let ignored = ignored.unwrap_or(Ignored {
+            first: 0,
+            end: 0,
+            clear: 0.0,
+        });
+        if self.nodes.is_empty() {
+            return None;
+        }
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi1") {
+            #[allow(unsafe_code, reason = "measured faster; the processor was asked")]
+            // SAFETY: the processor has what the function enables.
+            return unsafe { self.search_avx2::<ANY>(&line, limit, &ignored) };
+        }
+        self.walk::<Plain, ANY>(&line, limit, &ignored)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,bmi1,popcnt,lzcnt")]
+    fn search_avx2<const ANY: bool>(
+        &self,
+        ray: &Line,
+        limit: f32,
+        ignored: &Ignored,
+    ) -> Option<Found> {
+        self.walk::<lanes::Avx2, ANY>(ray, limit, ignored)
+    }
+
+    #[inline(always)]
+    fn walk<L: Lanes, const ANY: bool>(
+        &self,
+        ray: &Line,
+        mut limit: f32,
+        ignored: &Ignored,
+    ) -> Option<Found> {
+        let mut found = None;
+        // What is set aside, the nearest last, each with the distance of its box.
+        let mut aside = [(0.0f32, 0u32); STACK];
+        let mut count = 0;
+        let mut next = 0u32;
+        loop {
+            if next & LEAF == 0 {
+                let node = &self.nodes[next as usize];
+                let (mut met, begin) = node.meets::<L>(ray, limit);
+                if met != 0 {
+                    let begin = L::array(begin);
+                    let take = |met: &mut u32| {
+                        let k = met.trailing_zeros();
+                        *met &= *met - 1;
+                        (begin[k as usize & 7], node.child(k))
+                    };
+                    let mut nearest = take(&mut met);
+                    let bottom = count;
+                    while met != 0 {
+                        let mut other = take(&mut met);
+                        if other.0 < nearest.0 {
+                            std::mem::swap(&mut other, &mut nearest);
+                        }
+                        let mut at = count;
+                        while at > bottom && aside[at - 1].0 < other.0 {
+                            aside[at] = aside[at - 1];
+                            at -= 1;
+                        }
+                        aside[at] = other;
+                        count += 1;
+                    }
+                    next = nearest.1;
+                    continue;
+                }
+            } else {
+                let first = next & !(LEAF | PAIR);
+                for leaf in first..=first + (next & PAIR != 0) as u32 {
+                    self.meet::<L>(leaf, ray, ignored, &mut limit, &mut found);
+                    if ANY && found.is_some() {
+                        return found;
+                    }
+                }
+            }
+            loop {
+                if count == 0 {
+                    return found;
+                }
+                count -= 1;
+                let (begin, other) = aside[count];
+                if begin <= limit {
+                    next = other;
+                    break;
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn meet<L: Lanes>(
+        &self,
+        number: u32,
+        ray: &Line,
+        ignored: &Ignored,
+        limit: &mut f32,
+        found: &mut Option<Found>,
+    ) {
+        let leaf = &self.leaves[number as usize];
+        let (mut met, t) = leaf.meets::<L>(ray, *limit);
+        if met == 0 {
+            return;
+        }
+        let t = L::array(t);
+        while met != 0 {
+            let lane = met.trailing_zeros();
+            met &= met - 1;
+            let t = t[lane as usize & 7];
+            let (run, half) = (leaf.run(lane), lane / 4);
+            let is_first = match found {
+                Some(old) => t < old.t || (t == old.t && (run, half) < (old.run, old.half)),
+                None => true,
+            };
+            if is_first && !(t < ignored.clear && (ignored.first..ignored.end).contains(&run)) {
+                *limit = t;
+                *found = Some(Found { t, run, half });
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

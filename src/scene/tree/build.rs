@@ -1,0 +1,352 @@
+//! From runs to nodes and leaves, from the top down.
+//!
+//! A node's runs are looked at along axes of its own: those of the scene, or such that one lies along
+//! the hair where that makes boxes smaller (Woop, Benthin, Wald, Johnson and Tabellion 2014). They are
+//! cut in two where that costs a ray least (surface area heuristic in bins, Wald 2007), the largest part
+//! first, until there are eight parts.
+
+use super::leaf::{Leaf, RUNS};
+use super::node::{CHILDREN, Child, Node};
+use super::{DEPTH, Run};
+use glam::{Mat3, Vec3, Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+
+/// Bins along an axis.
+const BINS: usize = 16;
+/// From this depth on runs are halved, so that no way is longer than [`DEPTH`].
+const EVEN: usize = DEPTH - 10;
+/// Runs from which on the parts are built on several threads.
+const MANY: usize = 2048;
+/// Leaves of a child at most.
+const LEAVES: usize = 2;
+/// Runs that are looked at to choose axes.
+const SOME: usize = 256;
+
+/// Nodes, the root first, and leaves.
+pub(super) struct Draft {
+    pub(super) nodes: Vec<Node>,
+    pub(super) leaves: Vec<Leaf>,
+}
+
+/// * `numbers`: of the runs that are in the tree.
+pub(super) fn build(joints: &[Vec4], runs: &[Run], mut numbers: Vec<u32>) -> Draft {
+    if numbers.is_empty() {
+        return Draft {
+            nodes: Vec::new(),
+            leaves: Vec::new(),
+        };
+    }
+    let root = Fur { joints, runs }.branch(&mut numbers, 0, 0);
+    let (mut nodes, mut leaves) = (vec![None], Vec::new());
+    let mut open = vec![(0, &root)];
+    while let Some((number, branch)) = open.pop() {
+        let first = [nodes.len() as u32, leaves.len() as u32];
+        for part in &branch.parts {
+            match &part.below {
+                Some(below) => {
+                    open.push((nodes.len(), below));
+                    nodes.push(None);
+                }
+                None => {
+                    let (from, to) = (part.begin, part.begin + part.count);
+                    leaves.extend((from..to).step_by(RUNS).map(|l| (l, to.min(l + RUNS))));
+                }
+            }
+        }
+        let children: Vec<Child> = branch.parts.iter().map(|part| part.child).collect();
+        nodes[number] = Some(Node::new(&branch.axes, &children, first));
+    }
+    Draft {
+        nodes: nodes.into_iter().flatten().collect(),
+        leaves: (leaves.into_par_iter())
+            .map(|(from, to)| Leaf::new(joints, runs, &numbers[from..to]))
+            .collect(),
+    }
+}
+
+/// A node that is to be.
+struct Branch {
+    /// Columns.
+    axes: Mat3,
+    parts: Vec<Part>,
+}
+
+/// A child that is to be.
+struct Part {
+    child: Child,
+    /// Its runs in the order of the tree.
+    begin: usize,
+    count: usize,
+    below: Option<Box<Branch>>,
+}
+
+/// A box.
+#[derive(Clone, Copy)]
+struct Bounds {
+    lo: Vec3,
+    hi: Vec3,
+}
+
+impl Bounds {
+    const NONE: Self = Self {
+        lo: Vec3::INFINITY,
+        hi: Vec3::NEG_INFINITY,
+    };
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            lo: self.lo.min(other.lo),
+            hi: self.hi.max(other.hi),
+        }
+    }
+
+    /// Half of its surface; 0 for none.
+    fn area(&self) -> f32 {
+        let size = (self.hi - self.lo).max(Vec3::ZERO);
+        size.x * size.y + size.y * size.z + size.z * size.x
+    }
+
+    /// Twice its middle.
+    fn middle(&self) -> Vec3 {
+        self.lo + self.hi
+    }
+}
+
+/// A run along the axes of a node.
+#[derive(Clone, Copy)]
+struct Item {
+    bounds: Bounds,
+    number: u32,
+}
+
+/// Runs next to each other in the list of a node.
+struct Group {
+    begin: usize,
+    end: usize,
+    bounds: Bounds,
+    middles: Bounds,
+}
+
+impl Group {
+    fn new(items: &[Item], begin: usize, end: usize) -> Self {
+        let one = |item: &Item| {
+            let middle = item.bounds.middle();
+            let (lo, hi) = (middle, middle);
+            (item.bounds, Bounds { lo, hi })
+        };
+        let both = |a: (Bounds, Bounds), b: (Bounds, Bounds)| (a.0.with(b.0), a.1.with(b.1));
+        let none = (Bounds::NONE, Bounds::NONE);
+        let items = &items[begin..end];
+        let (bounds, middles) = match items.len() > 64 * MANY {
+            true => items.par_iter().map(one).reduce(|| none, both),
+            false => items.iter().map(one).fold(none, both),
+        };
+        Self {
+            begin,
+            end,
+            bounds,
+            middles,
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.end - self.begin
+    }
+}
+
+struct Fur<'a> {
+    joints: &'a [Vec4],
+    runs: &'a [Run],
+}
+
+impl Fur<'_> {
+    fn joints_of(&self, number: u32) -> &[Vec4] {
+        let run = self.runs[number as usize];
+        let first = run.joint as usize;
+        &self.joints[first..=first + run.segments as usize]
+    }
+
+    fn bounds(&self, number: u32, local: &Mat3) -> Bounds {
+        let mut bounds = Bounds::NONE;
+        for joint in self.joints_of(number) {
+            let at = *local * joint.xyz();
+            bounds.lo = bounds.lo.min(at - joint.w);
+            bounds.hi = bounds.hi.max(at + joint.w);
+        }
+        bounds
+    }
+
+    /// Axes, as columns, along which boxes are small.
+    fn axes(&self, numbers: &[u32]) -> Mat3 {
+        let some = || numbers.iter().step_by(numbers.len().div_ceil(SOME));
+        let mut along = Vec3::ZERO;
+        for &number in some() {
+            let joints = self.joints_of(number);
+            along += joints[joints.len() - 1].xyz() - joints[0].xyz();
+        }
+        let Some(along) = along.try_normalize() else {
+            return Mat3::IDENTITY;
+        };
+        let (x, y) = along.any_orthonormal_pair();
+        let axes = Mat3::from_cols(x, y, along);
+        let area = |local: &Mat3| {
+            let boxes = some().map(|&number| self.bounds(number, local));
+            let none = (0.0f32, Bounds::NONE);
+            let (sum, all) = boxes.fold(none, |(sum, all), b| (sum + b.area(), all.with(b)));
+            sum * all.area()
+        };
+        match area(&axes.transpose()) < area(&Mat3::IDENTITY) {
+            true => axes,
+            false => Mat3::IDENTITY,
+        }
+    }
+
+    fn branch(&self, numbers: &mut [u32], begin: usize, depth: usize) -> Branch {
+        let axes = self.axes(numbers);
+        let groups = self.deal(numbers, &axes, depth >= EVEN);
+        let is_many = numbers.len() > MANY;
+        let mut rest = numbers;
+        let mut parts: Vec<(Group, &mut [u32])> = Vec::with_capacity(groups.len());
+        for group in groups {
+            let (own, others) = rest.split_at_mut(group.count());
+            rest = others;
+            parts.push((group, own));
+        }
+        let part = |(group, numbers): (Group, &mut [u32])| {
+            let (begin, count) = (begin + group.begin, numbers.len());
+            let leaves = match count <= LEAVES * RUNS {
+                true => count.div_ceil(RUNS),
+                false => 0,
+            };
+            // Joints of leaves are rounded, by a good deal less than this.
+            let Bounds { lo, hi } = group.bounds;
+            let room = (hi - lo).max_element() * (1.0 / 16384.0);
+            let below = (leaves == 0).then(|| Box::new(self.branch(numbers, begin, depth + 1)));
+            let (lo, hi) = (lo - room, hi + room);
+            Part {
+                child: Child { lo, hi, leaves },
+                begin,
+                count,
+                below,
+            }
+        };
+        let parts = match is_many {
+            true => parts.into_par_iter().map(part).collect(),
+            false => parts.into_iter().map(part).collect(),
+        };
+        Branch { axes, parts }
+    }
+
+    /// Sorts runs into the parts of a node.
+    fn deal(&self, numbers: &mut [u32], axes: &Mat3, is_even: bool) -> Vec<Group> {
+        let local = axes.transpose();
+        let item = |&number: &u32| Item {
+            bounds: self.bounds(number, &local),
+            number,
+        };
+        let mut items: Vec<Item> = match numbers.len() > MANY {
+            true => numbers.par_iter().map(item).collect(),
+            false => numbers.iter().map(item).collect(),
+        };
+        let mut groups = vec![Group::new(&items, 0, items.len())];
+        while groups.len() < CHILDREN {
+            let largest = |least: usize| {
+                let area = |i: usize| groups[i].bounds.area();
+                (0..groups.len())
+                    .filter(|&i| groups[i].count() > least)
+                    .max_by(|&a, &b| area(a).total_cmp(&area(b)).then(b.cmp(&a)))
+            };
+            let Some(i) = largest(LEAVES * RUNS).or_else(|| largest(RUNS)) else {
+                break;
+            };
+            let whole = groups.swap_remove(i);
+            let first = cut(&mut items[whole.begin..whole.end], &whole.middles, is_even);
+            let middle = whole.begin + first;
+            groups.push(Group::new(&items, whole.begin, middle));
+            groups.push(Group::new(&items, middle, whole.end));
+        }
+        groups.sort_unstable_by_key(|g| g.begin);
+        for (number, item) in numbers.iter_mut().zip(&items) {
+            *number = item.number;
+        }
+        groups
+    }
+}
+
+/// Bins along each axis: what is in them and how many.
+type Bins = [[(Bounds, usize); BINS]; 3];
+
+fn join(a: (Bounds, usize), b: (Bounds, usize)) -> (Bounds, usize) {
+    (a.0.with(b.0), a.1 + b.1)
+}
+
+/// Cuts runs in two and gives how many are in the first part, neither none nor all.
+fn cut(items: &mut [Item], middles: &Bounds, is_even: bool) -> usize {
+    let size = middles.hi - middles.lo;
+    let widest = size.max_position();
+    if is_even || size[widest] <= 0.0 {
+        let half = items.len() / 2;
+        items.select_nth_unstable_by(half, |a, b| {
+            let at = |item: &Item| item.bounds.middle()[widest];
+            at(a).total_cmp(&at(b)).then(a.number.cmp(&b.number))
+        });
+        return half;
+    }
+    let scale = (0.9999 * BINS as f32) / size.max(Vec3::splat(f32::MIN_POSITIVE));
+    let bin = |item: &Item, axis: usize| {
+        let at = (item.bounds.middle()[axis] - middles.lo[axis]) * scale[axis];
+        (at as usize).min(BINS - 1)
+    };
+    let add = |mut bins: Bins, item: &Item| {
+        for (axis, bins) in bins.iter_mut().enumerate() {
+            let place = &mut bins[bin(item, axis)];
+            *place = join(*place, (item.bounds, 1));
+        }
+        bins
+    };
+    let none = [[(Bounds::NONE, 0); BINS]; 3];
+    let both = |a: Bins, b: Bins| {
+        std::array::from_fn(|axis| std::array::from_fn(|k| join(a[axis][k], b[axis][k])))
+    };
+    let bins = match items.len() > 64 * MANY {
+        true => (items.par_chunks(16 * MANY))
+            .map(|items| items.iter().fold(none, add))
+            .reduce(|| none, both),
+        false => items.iter().fold(none, add),
+    };
+    let (axis, place) = cheapest(&bins).unwrap_or((widest, BINS / 2));
+    let mut first = 0;
+    for i in 0..items.len() {
+        if bin(&items[i], axis) < place {
+            items.swap(first, i);
+            first += 1;
+        }
+    }
+    first
+}
+
+/// Axis and first bin of the second part, of all cuts that leave something on both sides.
+fn cheapest(bins: &Bins) -> Option<(usize, usize)> {
+    let cost = |(bounds, count): (Bounds, usize)| bounds.area() * count.div_ceil(RUNS) as f32;
+    let mut best = None;
+    let mut least = f32::INFINITY;
+    for (axis, bins) in bins.iter().enumerate() {
+        let mut above = [f32::INFINITY; BINS];
+        let mut sum = (Bounds::NONE, 0);
+        for k in (1..BINS).rev() {
+            sum = join(sum, bins[k]);
+            if sum.1 > 0 {
+                above[k] = cost(sum);
+            }
+        }
+        let mut sum = (Bounds::NONE, 0);
+        for k in 1..BINS {
+            sum = join(sum, bins[k - 1]);
+            if sum.1 > 0 && cost(sum) + above[k] < least {
+                least = cost(sum) + above[k];
+                best = Some((axis, k));
+            }
+        }
+    }
+    best
+}

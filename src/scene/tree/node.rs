@@ -1,0 +1,129 @@
+//! Eight boxes with axes of their own.
+
+use super::lanes::Lanes;
+use glam::{Mat3, Vec3};
+
+/// Children of a node at most.
+pub(super) const CHILDREN: usize = 8;
+
+/// A reference to leaves rather than to a node; two leaves one after the other.
+pub(super) const LEAF: u32 = 1 << 31;
+pub(super) const PAIR: u32 = 1 << 30;
+
+/// A ray as the search has it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    pub(super) origin: Vec3,
+    pub(super) dir: Vec3,
+}
+
+/// Boxes of children, whose edges lie along the fur in them where it is long in one direction. Planes are counted in
+/// steps from a corner, so that all is in two lines of a cache.
+#[derive(Clone, Debug)]
+#[repr(C, align(128))]
+pub(super) struct Node {
+    /// Unit and at right angles.
+    axes: [Vec3; 3],
+    /// Corner, in the scene.
+    corner: Vec3,
+    /// For each axis.
+    step: Vec3,
+    /// First inner child and first leaf; both kinds follow one another.
+    first: [u32; 2],
+    /// For each axis lower and upper planes.
+    planes: [[[u8; CHILDREN]; 2]; 3],
+    /// Which children there are, which of them are leaves, which of these are two, a bit each.
+    used: u8,
+    leaves: u8,
+    pairs: u8,
+}
+
+/// A child of a node that is to be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Child {
+    /// Corners of its box along the axes of the node, with all room that it needs.
+    pub(super) lo: Vec3,
+    pub(super) hi: Vec3,
+    /// Leaves; 0 for an inner child.
+    pub(super) leaves: usize,
+}
+
+impl Node {
+    /// * `axes`: columns, a rotation. * `children`: at most 8. * `first`: of both kinds.
+    pub(super) fn new(axes: &Mat3, children: &[Child], first: [u32; 2]) -> Self {
+        let lo = children.iter().fold(Vec3::INFINITY, |a, c| a.min(c.lo));
+        let hi = children.iter().fold(Vec3::NEG_INFINITY, |a, c| a.max(c.hi));
+        // Corner and ray are rounded in the scene and again along the axes.
+        let room = 16.0 * f32::EPSILON * lo.abs().max(hi.abs()).max_element().max(1e-3);
+        let corner = *axes * (lo - room);
+        let lowest = axes.transpose() * corner;
+        let step = (hi + 2.0 * room - lowest) / 254.0;
+        let mut node = Self {
+            axes: [axes.x_axis, axes.y_axis, axes.z_axis],
+            corner,
+            step,
+            first,
+            planes: [[[u8::MAX; CHILDREN], [0; CHILDREN]]; 3],
+            used: ((1u32 << children.len()) - 1) as u8,
+            leaves: 0,
+            pairs: 0,
+        };
+        for (k, child) in children.iter().enumerate() {
+            node.leaves |= u8::from(child.leaves > 0) << k;
+            node.pairs |= u8::from(child.leaves == 2) << k;
+            let (lo, hi) = (child.lo - room - lowest, child.hi + room - lowest);
+            for axis in 0..3 {
+                let [low, high] = &mut node.planes[axis];
+                low[k] = (lo[axis] / step[axis]).floor() as u8;
+                high[k] = (hi[axis] / step[axis]).ceil() as u8;
+            }
+        }
+        node
+    }
+
+    /// Reference to a child.
+    #[inline(always)]
+    pub(super) fn child(&self, k: u32) -> u32 {
+        let before = (1u32 << k) - 1;
+        let (leaves, pairs) = (u32::from(self.leaves), u32::from(self.pairs));
+        if leaves >> k & 1 == 0 {
+            self.first[0] + (before & !leaves).count_ones()
+        } else {
+            let at = self.first[1] + (before & leaves).count_ones() + (before & pairs).count_ones();
+            at | LEAF | (pairs >> k & 1) * PAIR
+        }
+    }
+
+    /// Which of the boxes a ray meets, a bit each, and where it enters each.
+    #[inline(always)]
+    pub(super) fn meets<L: Lanes>(&self, ray: &Line, limit: f32) -> (u32, L::F) {
+        let from = self.corner - ray.origin;
+        let mut begin = L::splat(0.0);
+        let mut end = L::splat(limit);
+        let [x, y, z] = self.axes;
+        let along = Vec3::new(x.dot(ray.dir), y.dot(ray.dir), z.dot(ray.dir));
+        let start = Vec3::new(x.dot(from), y.dot(from), z.dot(from));
+        // Rays along a plane take this for it, and with its sign.
+        let tiny = Vec3::splat(1e-18);
+        let inverse = along.abs().max(tiny).copysign(along).recip();
+        let (scale, start) = (self.step * inverse, start * inverse);
+        // From far away both boxes and strands are seen less sharply.
+        let reach = from.abs().element_sum();
+        let blur = (8.0 * f32::EPSILON * reach) * inverse.abs();
+        let (enter, leave) = (start - blur, start + blur);
+        for axis in 0..3 {
+            let [low, high] = &self.planes[axis];
+            let (near, far) = if inverse[axis] < 0.0 {
+                (high, low)
+            } else {
+                (low, high)
+            };
+            let scale = L::splat(scale[axis]);
+            let enters = L::add(L::mul(L::bytes(near), scale), L::splat(enter[axis]));
+            let leaves = L::add(L::mul(L::bytes(far), scale), L::splat(leave[axis]));
+            begin = L::max(begin, enters);
+            end = L::min(end, leaves);
+        }
+        (L::le(begin, end) & u32::from(self.used), begin)
+    }
+}
