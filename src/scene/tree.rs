@@ -27,7 +27,7 @@ pub(super) struct Run {
 }
 
 /// Nodes one below the other at most; below [`build::EVEN`] halves are even.
-const DEPTH: usize = 36;
+const DEPTH: usize = 24;
 /// References set aside at most.
 const STACK: usize = DEPTH * (CHILDREN - 1) + 1;
 
@@ -157,7 +157,9 @@ impl Tree {
                     let take = |met: &mut u32| {
                         let k = met.trailing_zeros();
                         *met &= *met - 1;
-                        (begin[k as usize & 7], node.child(k))
+                        let child = node.child(k);
+                        self.fetch(child);
+                        (begin[k as usize & 7], child)
                     };
                     let mut nearest = take(&mut met);
                     let bottom = count;
@@ -197,6 +199,15 @@ impl Tree {
                     break;
                 }
             }
+        }
+    }
+
+    /// Asks for what will be looked at next or soon.
+    #[inline(always)]
+    fn fetch(&self, child: u32) {
+        match child & LEAF {
+            0 => self.nodes.fetch(child as usize),
+            _ => self.leaves.fetch((child & !(LEAF | PAIR)) as usize),
         }
     }
 

@@ -297,10 +297,14 @@ fn cut(items: &mut [Item], middles: &Bounds, is_even: bool) -> usize {
         let at = (item.bounds.middle()[axis] - middles.lo[axis]) * scale[axis];
         (at as usize).min(BINS - 1)
     };
-    let add = |mut bins: Bins, item: &Item| {
-        for (axis, bins) in bins.iter_mut().enumerate() {
-            let place = &mut bins[bin(item, axis)];
-            *place = join(*place, (item.bounds, 1));
+    let sort = |items: &[Item]| {
+        let mut bins: Bins = [[(Bounds::NONE, 0); BINS]; 3];
+        for item in items {
+            for (axis, bins) in bins.iter_mut().enumerate() {
+                let (bounds, count) = &mut bins[bin(item, axis)];
+                *bounds = bounds.with(item.bounds);
+                *count += 1;
+            }
         }
         bins
     };
@@ -310,9 +314,9 @@ fn cut(items: &mut [Item], middles: &Bounds, is_even: bool) -> usize {
     };
     let bins = match items.len() > 64 * MANY {
         true => (items.par_chunks(16 * MANY))
-            .map(|items| items.iter().fold(none, add))
+            .map(sort)
             .reduce(|| none, both),
-        false => items.iter().fold(none, add),
+        false => sort(items),
     };
     let (axis, place) = cheapest(&bins).unwrap_or((widest, BINS / 2));
     let mut first = 0;

@@ -92,7 +92,8 @@ impl Lanes for Plain {
     }
 }
 
-/// For processors with AVX2. To be used within functions that enable it only.
+/// For processors with AVX2. To be used within functions that enable it only, without closures between, which would
+/// not be compiled for it.
 #[cfg(target_arch = "x86_64")]
 pub(in crate::scene) struct Avx2;
 

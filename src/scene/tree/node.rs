@@ -1,7 +1,7 @@
 //! Eight boxes with axes of their own.
 
 use super::lanes::Lanes;
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec3, Vec4};
 
 /// Children of a node at most.
 pub(super) const CHILDREN: usize = 8;
@@ -22,16 +22,14 @@ pub(super) struct Line {
 #[derive(Clone, Debug)]
 #[repr(C, align(128))]
 pub(super) struct Node {
-    /// Unit and at right angles.
-    axes: [Vec3; 3],
+    /// Columns: from directions in the scene to steps along the axes of the boxes.
+    turn: [Vec4; 3],
     /// Corner, in the scene.
-    corner: Vec3,
-    /// For each axis.
-    step: Vec3,
-    /// First inner child and first leaf; both kinds follow one another.
-    first: [u32; 2],
+    corner: Vec4,
     /// For each axis lower and upper planes.
     planes: [[[u8; CHILDREN]; 2]; 3],
+    /// First inner child and first leaf; both kinds follow one another.
+    first: [u32; 2],
     /// Which children there are, which of them are leaves, which of these are two, a bit each.
     used: u8,
     leaves: u8,
@@ -58,10 +56,10 @@ impl Node {
         let corner = *axes * (lo - room);
         let lowest = axes.transpose() * corner;
         let step = (hi + 2.0 * room - lowest) / 254.0;
+        let local = Mat3::from_diagonal(step.recip()) * axes.transpose();
         let mut node = Self {
-            axes: [axes.x_axis, axes.y_axis, axes.z_axis],
-            corner,
-            step,
+            turn: [local.x_axis, local.y_axis, local.z_axis].map(|column| column.extend(0.0)),
+            corner: corner.extend(0.0),
             first,
             planes: [[[u8::MAX; CHILDREN], [0; CHILDREN]]; 3],
             used: ((1u32 << children.len()) - 1) as u8,
@@ -97,30 +95,27 @@ impl Node {
     /// Which of the boxes a ray meets, a bit each, and where it enters each.
     #[inline(always)]
     pub(super) fn meets<L: Lanes>(&self, ray: &Line, limit: f32) -> (u32, L::F) {
-        let from = self.corner - ray.origin;
+        let from = self.corner - ray.origin.extend(0.0);
+        let [x, y, z] = self.turn;
+        let along = x * ray.dir.x + y * ray.dir.y + z * ray.dir.z;
+        let [x, y, z] = [x * from.x, y * from.y, z * from.z];
+        // Rays along a plane take this for it, and with its sign.
+        let tiny = Vec4::splat(1e-18);
+        let inverse = along.abs().max(tiny).copysign(along).recip();
+        let start = (x + y + z) * inverse;
+        // From far away both boxes and strands are seen less sharply.
+        let reach = x.abs() + y.abs() + z.abs();
+        let blur = (8.0 * f32::EPSILON) * reach * inverse.abs();
+        let (enter, leave) = (start - blur, start + blur);
+        let down = inverse.is_negative_bitmask() as usize;
         let mut begin = L::splat(0.0);
         let mut end = L::splat(limit);
-        let [x, y, z] = self.axes;
-        let along = Vec3::new(x.dot(ray.dir), y.dot(ray.dir), z.dot(ray.dir));
-        let start = Vec3::new(x.dot(from), y.dot(from), z.dot(from));
-        // Rays along a plane take this for it, and with its sign.
-        let tiny = Vec3::splat(1e-18);
-        let inverse = along.abs().max(tiny).copysign(along).recip();
-        let (scale, start) = (self.step * inverse, start * inverse);
-        // From far away both boxes and strands are seen less sharply.
-        let reach = from.abs().element_sum();
-        let blur = (8.0 * f32::EPSILON * reach) * inverse.abs();
-        let (enter, leave) = (start - blur, start + blur);
         for axis in 0..3 {
-            let [low, high] = &self.planes[axis];
-            let (near, far) = if inverse[axis] < 0.0 {
-                (high, low)
-            } else {
-                (low, high)
-            };
-            let scale = L::splat(scale[axis]);
-            let enters = L::add(L::mul(L::bytes(near), scale), L::splat(enter[axis]));
-            let leaves = L::add(L::mul(L::bytes(far), scale), L::splat(leave[axis]));
+            let near = down >> axis & 1;
+            let [near, far] = [near, near ^ 1].map(|side| &self.planes[axis][side]);
+            let step = L::splat(inverse[axis]);
+            let enters = L::add(L::mul(L::bytes(near), step), L::splat(enter[axis]));
+            let leaves = L::add(L::mul(L::bytes(far), step), L::splat(leave[axis]));
             begin = L::max(begin, enters);
             end = L::min(end, leaves);
         }

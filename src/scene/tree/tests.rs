@@ -139,12 +139,17 @@ fn every_ray_meets_to_the_bit_what_a_test_of_all_segments_finds() {
         let mut hits = 0;
         for i in 0..1_500 {
             let joint = joints[rng.bits() as usize % joints.len()];
-            let target = joint.xyz() + 1.5 * joint.w * point(&mut rng);
+            // Within, or at the rim.
+            let off = match i % 3 {
+                0 => point(&mut rng).normalize_or_zero(),
+                _ => 1.5 * point(&mut rng),
+            };
+            let target = joint.xyz() + joint.w * off;
             let away = match i % 4 {
                 0 => 1e-3,
                 1 => 1.0,
                 2 => 2.0 * size,
-                _ => 50.0 * size,
+                _ => 2_000.0 * size,
             };
             let dir = match i % 5 {
                 0 => Vec3::AXES[i % 3],
