@@ -413,7 +413,7 @@ fn identity(args: &Args, species: &species::Species, scene: &Scene) -> Origin {
 /// Hash of everything that rays can meet.
 fn fingerprint(scene: &Scene) -> String {
     let mut hasher = Sha256::new();
-    for joint in scene.strands.joints() {
+    for (_, joint) in scene.strands.joints() {
         for x in joint.to_array() {
             hasher.update(x.to_le_bytes());
         }
