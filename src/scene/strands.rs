@@ -99,8 +99,8 @@ impl Strands {
             all.count.extend(batch.count);
             all.length_mm.extend(batch.length_mm);
         }
-        let joints = all.joints.iter();
-        if let Some(far) = joints.copied().find(|j| !(j.abs().max_element() <= LIMIT)) {
+        let is_far = |j: &Vec4| !j.is_finite() || j.abs().max_element() > LIMIT;
+        if let Some(far) = all.joints.iter().copied().find(is_far) {
             return Err(SceneError::Coordinates { at: far.xyz() });
         }
         let (mut first_joint, mut first_run) = (vec![0], vec![0]);

@@ -88,7 +88,7 @@ impl Node {
             self.first[0] + (before & !leaves).count_ones()
         } else {
             let at = self.first[1] + (before & leaves).count_ones() + (before & pairs).count_ones();
-            at | LEAF | (pairs >> k & 1) * PAIR
+            at | LEAF | ((pairs >> k & 1) * PAIR)
         }
     }
 
