@@ -22,7 +22,7 @@ pub fn looks(
     cancel: &Cancel,
 ) -> Result<Vec<ClassLook>, AssemblyError> {
     let mut looks = Vec::with_capacity(species.classes.len());
-    for class in &species.classes {
+    for (index, class) in species.classes.iter().enumerate() {
         let Some(station) = class.widest() else {
             continue;
         };
@@ -34,20 +34,33 @@ pub fn looks(
         if !baked.complete {
             return Err(BakeError::Stopped.into());
         }
-        progress.begin("fitting", class.pigment.len() as u64, "materials");
-        let mut zones = Vec::with_capacity(class.pigment.len());
-        for band in &class.pigment {
-            if cancel.is_cancelled() {
-                return Err(BakeError::Stopped.into());
+        let pigments = species.pigments(index);
+        let bands: usize = pigments.iter().map(|bands| bands.len()).sum();
+        progress.begin("fitting", bands as u64, "materials");
+        // Parts of a coat share bands; each is fitted once.
+        let mut known: Vec<([f64; 3], HairLook)> = Vec::new();
+        let mut parts = Vec::with_capacity(pigments.len());
+        for bands in pigments {
+            let mut zones = Vec::with_capacity(bands.len());
+            for band in bands {
+                if cancel.is_cancelled() {
+                    return Err(BakeError::Stopped.into());
+                }
+                let absorption = band.absorption_per_um();
+                let look = match known.iter().find(|(a, _)| *a == absorption) {
+                    Some((_, look)) => look.clone(),
+                    None => look(&Model::Chiang.fit(&baked.table.dye(absorption)?, &[0, 1, 2])?),
+                };
+                known.push((absorption, look.clone()));
+                zones.push(look);
+                progress.advance(1);
             }
-            let maps = baked.table.dye(band.absorption_per_um())?;
-            zones.push(look(&Model::Chiang.fit(&maps, &[0, 1, 2])?));
-            progress.advance(1);
+            parts.push(zones);
         }
         progress.finish();
         looks.push(ClassLook {
             station: station.at,
-            zones,
+            parts,
         });
     }
     Ok(looks)

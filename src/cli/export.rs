@@ -241,7 +241,7 @@ fn looks(args: &Args, species: &Species, console: &Console) -> Result<Vec<ClassL
     let cancel = console.cancel();
     let looks = assembly::looks(species, &bake, cache.as_ref(), console, cancel)?;
     for (class, look) in species.classes.iter().zip(&looks) {
-        let errors: Vec<String> = (look.zones.iter())
+        let errors: Vec<String> = (look.parts.iter().flatten())
             .map(|zone| format!("{:.0} %", 100.0 * zone.mean_error()))
             .collect();
         console.say(format!(

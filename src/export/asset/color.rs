@@ -1,9 +1,9 @@
 //! Color along a strand, without a bake: what a coat of such hair looks like from afar.
 
-use super::look::ClassLook;
+use super::look::{ClassLook, HairLook};
 use crate::groom::Groom;
 use crate::math::fresnel;
-use crate::species::{HairClass, PigmentBand};
+use crate::species::{HairClass, PigmentBand, Species};
 use glam::Vec3;
 
 /// Index of refraction of hair.
@@ -40,7 +40,7 @@ impl Zones {
     pub(super) fn new(
         class: &HairClass,
         pigment: &[PigmentBand],
-        look: Option<&ClassLook>,
+        look: Option<&[HairLook]>,
     ) -> Self {
         let radius_um = 0.5 * class.groom.diameter_um;
         Self {
@@ -54,7 +54,7 @@ impl Zones {
                         color: Vec3::from_array(depth.map(|d| coat(hair(d)) as f32)),
                         melanin: Vec3::new(band.eumelanin as f32, band.pheomelanin as f32, 0.0),
                         absorption: Vec3::from_array(
-                            look.and_then(|look| look.zones.get(zone))
+                            look.and_then(|look| look.get(zone))
                                 .map_or(depth, |look| look.absorption)
                                 .map(|a| a as f32),
                         ),
@@ -62,11 +62,6 @@ impl Zones {
                 })
                 .collect(),
         }
-    }
-
-    /// Whether the hair has the same pigment from root to tip.
-    pub(super) fn is_even(&self) -> bool {
-        self.values.iter().all(|v| *v == self.values[0])
     }
 
     /// Which zone is the longest on a hair of some length.
@@ -120,6 +115,45 @@ impl Zones {
             }
             out.push(self.at(tip_mm.max(0.0), &of));
         }
+    }
+}
+
+/// Pigment of one class in every part of a coat, that of the species itself first; never empty.
+#[derive(Clone, Debug)]
+pub(super) struct Coats(pub(super) Vec<Zones>);
+
+impl Coats {
+    /// * `class`: index of the hair class.
+    pub(super) fn new(species: &Species, class: usize, look: Option<&ClassLook>) -> Self {
+        let hair = &species.classes[class];
+        let parts = species.pigments(class).into_iter().enumerate();
+        Self(
+            parts
+                .map(|(part, pigment)| {
+                    let look = look.and_then(|look| look.parts.get(part));
+                    Zones::new(hair, pigment, look.map(Vec::as_slice))
+                })
+                .collect(),
+        )
+    }
+
+    /// Whether all hair has the same pigment from root to tip.
+    pub(super) fn is_even(&self) -> bool {
+        let first = self.0[0].values[0];
+        let mut all = self.0.iter().flat_map(|zones| &zones.values);
+        all.all(|dye| *dye == first)
+    }
+
+    /// As [`Zones::along`], of the part of the coat that the strand belongs to.
+    pub(super) fn along(
+        &self,
+        groom: &Groom,
+        strand: usize,
+        of: impl Fn(&Dye) -> Vec3,
+        out: &mut Vec<Vec3>,
+    ) {
+        let part = groom.coat.get(strand).map_or(0, |&part| usize::from(part));
+        self.0[part.min(self.0.len() - 1)].along(groom, strand, of, out);
     }
 }
 

@@ -1,6 +1,6 @@
 //! What strands are given besides points and widths.
 
-use super::color::Zones;
+use super::color::Coats;
 use super::profile::Column;
 use super::strands::Strands;
 use super::tree::{Builder, Purpose};
@@ -65,8 +65,8 @@ impl<'a> Builder<'_, 'a> {
     /// Attributes that change along a strand.
     pub(super) fn point_columns(&self, prim: &mut Prim<'a>, strands: &Strands<'a>, class: usize) {
         let (groom, profile) = (self.parts.groom, &self.settings.profile);
-        let hair = self.class(class);
-        let zones = Arc::new(Zones::new(hair, &hair.pigment, self.look(class)));
+        let coats = Coats::new(self.parts.species, class, self.look(class));
+        let zones = Arc::new(coats);
         let of = Arc::clone(&zones);
         let color: Value<'a> = strands
             .vertex3(move |i, out| of.along(groom, i, |dye| dye.color, out))
@@ -90,11 +90,11 @@ impl<'a> Builder<'_, 'a> {
         }
     }
 
-    fn melanin(&self, prim: &mut Prim<'a>, strands: &Strands<'a>, zones: &Arc<Zones>) {
+    fn melanin(&self, prim: &mut Prim<'a>, strands: &Strands<'a>, zones: &Arc<Coats>) {
         let groom = self.parts.groom;
         for (part, name) in ["eumelanin", "pheomelanin"].into_iter().enumerate() {
             if zones.is_even() {
-                let value = zones.values[0].melanin[part];
+                let value = zones.0[0].values[0].melanin[part];
                 let value = Array::Float(Rows::of(vec![value]));
                 prim.primvar("float[]", name, "constant", value.into());
                 continue;

@@ -5,8 +5,9 @@
 pub struct ClassLook {
     /// Position along the hair whose structure was fitted, 0 root .. 1 tip.
     pub station: f64,
-    /// One a zone of pigment, from the tip to the root; never empty.
-    pub zones: Vec<HairLook>,
+    /// For each part of the coat's pattern, that of the species itself first: one a zone of pigment, from
+    /// the tip to the root. Never empty.
+    pub parts: Vec<Vec<HairLook>>,
 }
 
 /// Chiang et al. 2016, "A practical and controllable hair and fur model for production path tracing".

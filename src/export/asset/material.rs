@@ -1,7 +1,8 @@
 //! Materials: MaterialX's hair with plain numbers, a preview for viewports, and how well they fit.
 
-use super::color::Zones;
+use super::color::Coats;
 use super::look::{ClassLook, HairLook};
+use super::provenance::identifier;
 use crate::export::usd::{Attribute, Dictionary, Prim, Value};
 use crate::species::HairClass;
 use glam::Vec3;
@@ -14,34 +15,42 @@ const PREVIEW_ROUGHNESS: f32 = 0.6;
 
 /// Materials of one hair class.
 ///
-/// * `scope`: path of the scope that they go to. * `name`: identifier of the class.
+/// * `scope`: path of the scope that they go to. * `coats`: names of the parts of the coat.
 ///
-/// The first is for the whole hair: where its pigment changes it reads the absorption from the strands and
-/// has the other numbers of its longest zone. Each zone of such hair has a plain one besides.
+/// The first is for all its hair: where pigment changes it reads the absorption from the strands and has
+/// the other numbers of the longest zone. Each zone of such hair has a plain one besides.
 pub(super) fn materials<'a>(
     scope: &str,
-    name: &str,
     class: &HairClass,
+    coats: &[String],
     look: &ClassLook,
-    zones: &Zones,
+    pigment: &Coats,
 ) -> Vec<Prim<'a>> {
-    let longest = zones.longest(class.groom.length_mm as f32);
-    let color = |zone: usize| zones.values[zone].color;
+    let own = &pigment.0[0];
+    let longest = own.longest(class.groom.length_mm as f32);
+    let name = identifier(&class.name);
     let whole = Hair {
         path: format!("{scope}/{name}"),
-        look: &look.zones[longest],
-        color: color(longest),
-        changes: !zones.is_even(),
+        look: &look.parts[0][longest],
+        color: own.values[longest].color,
+        changes: !pigment.is_even(),
         station: look.station,
     };
-    let mut materials = vec![whole.material(name)];
-    if whole.changes {
-        for (zone, of_zone) in look.zones.iter().enumerate() {
-            let name = format!("{name}_zone_{}", zone + 1);
+    let mut materials = vec![whole.material(&name)];
+    if !whole.changes {
+        return materials;
+    }
+    for (part, looks) in look.parts.iter().enumerate() {
+        let coat = match coats.get(part) {
+            Some(coat) if part > 0 => format!("_{}", identifier(coat)),
+            _ => String::new(),
+        };
+        for (zone, look_of_zone) in looks.iter().enumerate() {
+            let name = format!("{name}{coat}_zone_{}", zone + 1);
             let hair = Hair {
                 path: format!("{scope}/{name}"),
-                look: of_zone,
-                color: color(zone),
+                look: look_of_zone,
+                color: pigment.0[part].values[zone].color,
                 changes: false,
                 station: look.station,
             };

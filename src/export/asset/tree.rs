@@ -1,6 +1,6 @@
 //! The prims of an asset.
 
-use super::color::Zones;
+use super::color::Coats;
 use super::levels::{Level, LevelClass, guides, proxy};
 use super::look::ClassLook;
 use super::profile::Reader;
@@ -169,9 +169,9 @@ impl<'a> Builder<'_, 'a> {
         let mut materials = Vec::new();
         for (class, look) in self.parts.looks.iter().enumerate() {
             let hair = self.class(class);
-            let zones = Zones::new(hair, &hair.pigment, Some(look));
-            let name = identifier(&hair.name);
-            materials.extend(material::materials(&scope, &name, hair, look, &zones));
+            let coats = Coats::new(self.parts.species, class, Some(look));
+            let names = &self.parts.groom.coats;
+            materials.extend(material::materials(&scope, hair, names, look, &coats));
         }
         if !materials.is_empty() {
             materials.push(material::skin(&scope, self.skin_color()));
@@ -269,9 +269,9 @@ impl<'a> Builder<'_, 'a> {
             && self.settings.profile.has(Reader::Blender)
         {
             let hair = self.class(class);
-            let zones = Zones::new(hair, &hair.pigment, Some(look));
-            let longest = zones.longest(hair.groom.length_mm as f32);
-            user_properties(&mut curves, &material::blender(&look.zones[longest]));
+            let coats = Coats::new(self.parts.species, class, Some(look));
+            let longest = coats.0[0].longest(hair.groom.length_mm as f32);
+            user_properties(&mut curves, &material::blender(&look.parts[0][longest]));
         }
         self.bind(&mut curves, &identifier(&name));
         user_properties(
