@@ -71,7 +71,7 @@ def main():
     scene.render.filepath = picture
     bpy.ops.render.render(write_still=True)
     pixels = list(bpy.data.images.load(picture).pixels)[3::4]
-    covered = sum(1 for alpha in pixels if alpha > 0.5) / len(pixels)
+    covered = sum(1 for alpha in pixels if alpha > 0.2) / len(pixels)
     assert 0.02 < covered < 0.9, f"the coat covers {covered} of the picture"
     print(f"OK {vdb}: {sorted(grids)}, covers {covered:.3f} of the picture")
 

@@ -7,9 +7,9 @@ use glam::{IVec3, Vec3};
 /// A grid of a coat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Field {
-    /// Diameter times length of the strands in a voxel over its volume, one over a unit of length: the extinction coefficient
-    /// for light across the strands. It does not change when a groom is thinned, whose strands
-    /// are widened so that they cover as much.
+    /// Diameter times length of the strands in a voxel over its volume, one over a unit of length: the
+    /// extinction coefficient for light across the strands. Thinning a groom leaves it as it is as far as
+    /// the strands are widened to cover as much.
     Density,
     /// Mean scattering albedo of the strands, linear Rec.709, weighted by area: what a volume shader needs
     /// as its color to look like fur of the strands' color (see [`super::scattering_albedo`]). It reaches a
