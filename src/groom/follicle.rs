@@ -59,6 +59,8 @@ pub(super) struct Surface<'a> {
     density: Cow<'a, [f32]>,
     /// Running sum of area times largest corner density.
     cumulative: Vec<f64>,
+    /// Where to begin to look in `cumulative`: for each of as many equal parts of the total.
+    guide: Vec<u32>,
     weighted_area: f64,
     densest: f32,
 }
@@ -78,7 +80,7 @@ impl<'a> Surface<'a> {
 
     fn with_density(skin: &'a Skin, density: Cow<'a, [f32]>) -> Result<Self, GroomError> {
         let (mut sum, mut weighted_area, mut densest) = (0.0, 0.0, 0.0f32);
-        let cumulative = (0..skin.triangles.len())
+        let cumulative: Vec<f64> = (0..skin.triangles.len())
             .map(|i| {
                 let area = skin.triangle_area(i);
                 let [a, b, c] = skin.triangles[i].map(|v| density[v as usize]);
@@ -95,9 +97,22 @@ impl<'a> Surface<'a> {
                 area_m2: weighted_area,
             });
         }
+        let parts = cumulative.len();
+        let mut at = 0;
+        let guide = (0..parts)
+            .map(|part| {
+                // A part begins where the one before ends, or one earlier for rounding.
+                let from = sum * part as f64 / parts as f64 * (1.0 - 1e-12);
+                while at + 1 < parts && cumulative[at] <= from {
+                    at += 1;
+                }
+                at as u32
+            })
+            .collect();
         Ok(Self {
             skin,
             density,
+            guide,
             cumulative,
             weighted_area,
             densest,
@@ -146,6 +161,18 @@ impl<'a> Surface<'a> {
         values[a as usize] * (1.0 - u - v) + values[b as usize] * u + values[c as usize] * v
     }
 
+    /// The first triangle whose running sum is above `at` (Chen and Asau 1974, "On generating random
+    /// variates from an empirical distribution": a table to begin at makes the search short).
+    fn triangle_at(&self, at: f64, total: f64) -> usize {
+        let parts = self.guide.len();
+        let part = ((at / total * parts as f64) as usize).min(parts - 1);
+        let mut triangle = self.guide[part] as usize;
+        while triangle + 1 < parts && self.cumulative[triangle] <= at {
+            triangle += 1;
+        }
+        triangle
+    }
+
     /// Dart `index`: a random point and its density factor; `None` where the skin is sparser than
     /// the dart's luck.
     fn dart(&self, seed: u64, index: u64) -> Option<(Follicle, f32)> {
@@ -153,8 +180,7 @@ impl<'a> Surface<'a> {
         let total = self.cumulative.last().copied().unwrap_or(0.0);
         // 32 bits would step over small triangles of large meshes.
         let at = (rng.uniform() + rng.uniform() / 4_294_967_296.0) * total;
-        let triangle = self.cumulative.partition_point(|&sum| sum <= at);
-        let triangle = triangle.min(self.cumulative.len() - 1);
+        let triangle = self.triangle_at(at, total);
         let (mut u, mut v) = (rng.uniform_f32(), rng.uniform_f32());
         if u + v > 1.0 {
             (u, v) = (1.0 - u, 1.0 - v);

@@ -6,6 +6,8 @@ mod error;
 mod field;
 mod follicle;
 mod plan;
+#[cfg(test)]
+mod shape_tests;
 mod strand;
 #[cfg(test)]
 mod tests;
@@ -56,6 +58,9 @@ pub struct Groom {
     pub classes: Vec<String>,
     /// Names of the parts of the coat's pattern; the first has the pigment of the species itself.
     pub coats: Vec<String>,
+    /// Factor on the skin's color at each of its vertices, so that a thin coat shows no other color
+    /// through; empty for a coat of one color. See [`crate::skin::Skin::tint`].
+    pub skin_tint: Vec<Vec3>,
     /// What could not be grown as asked, one sentence each.
     pub warnings: Vec<String>,
     /// Per class: factor on the natural diameter by which a thinned groom stays opaque; 1 at full
@@ -175,6 +180,9 @@ pub fn grow(
             Some(recipe) => recipe.parts(),
             None => vec!["own".to_owned()],
         },
+        skin_tint: (coat.iter())
+            .flat_map(|coat| coat.skin_tint(skin, species))
+            .collect(),
         warnings: coat.iter().flat_map(|c| c.warnings.clone()).collect(),
         width_scale: plan.iter().map(|c| c.width_scale as f32).collect(),
         natural: plan.iter().map(|c| c.natural).collect(),

@@ -49,6 +49,12 @@ const POINTS_PER_WAVE: f32 = 3.0;
 const CRIMP_LIMIT: f32 = 0.06;
 /// Hair of a length factor f is finer by f to this power.
 const FINER: f32 = 0.2;
+/// How much closer wet hair clings: at full wetness clumps are this many times as large, and of its
+/// emergence, bend and straying this share is left.
+const WET_CLUMP: f32 = 3.0;
+const WET_LIFT: f32 = 0.35;
+/// Waves of frizz along a hair.
+const FRIZZ_WAVES: f32 = 2.2;
 /// Hair pressed to the ground stays this far above it, meters.
 const GROUND_GAP: f32 = 4e-4;
 /// Exponent of the tip's taper, and the width left at the very tip.
@@ -57,7 +63,8 @@ const TIP: f64 = 0.08;
 
 /// Control points of each strand of a class.
 pub(super) fn points_of(class: &ClassGroom) -> usize {
-    if class.length_mm > LONG_MM {
+    // A turn of a curl needs its points.
+    if class.length_mm > LONG_MM || class.curl_mm > 0.0 {
         POINTS_LONG
     } else {
         POINTS
@@ -77,6 +84,8 @@ pub(super) struct Grower<'a> {
     /// Position along the hair of each control point, 0 root .. 1 tip.
     zetas: Vec<f32>,
     profile: Vec<f32>,
+    /// Meters.
+    widest: f32,
 }
 
 /// What is random about one strand.
@@ -90,6 +99,8 @@ struct Luck {
     roll: f32,
     /// Of the section.
     side: f32,
+    /// Phases of the frizz.
+    frizz: [f32; 2],
 }
 
 impl<'a> Grower<'a> {
@@ -112,6 +123,7 @@ impl<'a> Grower<'a> {
             .map(|&zeta| (widest * profile(class, f64::from(zeta))) as f32)
             .collect();
         let size = (class.clump_mm * 1e-3).max(1e-4) as f32;
+        let size = size * (1.0 + (WET_CLUMP - 1.0) * class.wet as f32);
         Self {
             class,
             gravity: skin.gravity.clamp(0.0, 1.0),
@@ -129,12 +141,18 @@ impl<'a> Grower<'a> {
             },
             zetas,
             profile,
+            widest: widest as f32,
         }
     }
 
     /// Control points of each strand.
     pub(super) fn points(&self) -> usize {
         self.zetas.len()
+    }
+
+    /// Factor on how far hair stands off when wet.
+    fn dry(&self) -> f32 {
+        1.0 - (1.0 - WET_LIFT) * self.class.wet as f32
     }
 
     fn luck(&self, id: u32) -> Luck {
@@ -146,7 +164,7 @@ impl<'a> Grower<'a> {
         };
         let (a, b) = rng.normal_pair();
         let (c, d) = rng.normal_pair();
-        let stray = class.stray_deg.to_radians();
+        let stray = class.stray_deg.to_radians() * f64::from(self.dry());
         Luck {
             length: log_normal(class.length_sigma, a),
             width: log_normal(class.diameter_sigma, b),
@@ -155,6 +173,7 @@ impl<'a> Grower<'a> {
             phase: rng.uniform_f32() * TAU,
             roll: rng.uniform_f32() * TAU,
             side: (class.roll_deg.to_radians() * rng.normal_pair().0) as f32,
+            frizz: [rng.uniform_f32() * TAU, rng.uniform_f32() * TAU],
         }
     }
 
@@ -181,11 +200,13 @@ impl<'a> Grower<'a> {
             * luck.length
             * (1.0 + DRIFT_LENGTH * drift(0.0))
             * (1.0 + TUFT_LENGTH * lock.random[0]);
+        let whole = length;
+        let length = length.min(class.trim_mm as f32 * 1e-3);
         let shared_turn = DRIFT_TURN * drift(40.0) + TUFT_LEAN * lock.random[1];
         let shared_lift = 0.5 * TUFT_LEAN * lock.random[2];
 
         // Two curves: the hair by itself, and what it would be without straying from its tuft.
-        let emergence = class.emergence_deg.to_radians() as f32 + shared_lift;
+        let emergence = class.emergence_deg.to_radians() as f32 * self.dry() + shared_lift;
         let lean = |turn: f32, lift: f32| Lean {
             combing: Quat::from_axis_angle(root.normal, turn) * root.combing,
             emergence: (emergence + lift).clamp(LOWEST, FRAC_PI_2),
@@ -197,11 +218,17 @@ impl<'a> Grower<'a> {
         let to_lock = tangential(lock.center - root.position);
         // A shorter hair has less way to its neighbors.
         let share = class.clump as f32 * root.length.min(1.0);
+        let share = share + 0.9 * class.wet as f32 * (1.0 - share);
         let pull = (share * (1.0 + 0.4 * clump.random[3])).clamp(0.0, 1.0);
+        // Wet hair sticks to its neighbors, not to a whole lock.
+        let share = share * (1.0 - class.wet as f32);
         let lock_pull = (LOCK_PULL * share * (1.0 + 0.4 * lock.random[3])).clamp(0.0, 1.0);
 
         let (mut hair, mut center) = (root.position, root.position);
-        let crimp = Crimp::new(class, length, length / (self.points() - 1) as f32, &luck);
+        let step = length / (self.points() - 1) as f32;
+        let crimp = Crimp::new(class, length, step, &luck);
+        let curl = Curl::new(class, step, clump.random[2]);
+        let frizz = Frizz::new(class, root, &luck);
         points[0] = root.position;
         for k in 0..self.points() - 1 {
             let (from, zeta) = (self.zetas[k], self.zetas[k + 1]);
@@ -209,13 +236,24 @@ impl<'a> Grower<'a> {
             center = self.step(center, root, &tuft, [from, zeta], length);
             let weight = clump_weight(zeta);
             let toward = pull * weight * (center + to_clump - hair) + lock_pull * weight * to_lock;
-            let point = hair + toward + crimp.offset(&own, root, zeta * length);
+            let point = hair
+                + toward
+                + crimp.offset(&own, root, zeta * length)
+                + curl.offset(&tuft, root, zeta * length)
+                + frizz.offset(zeta);
             points[k + 1] = self.lift(point, root, zeta * length);
         }
         // Finer where it is shorter, as on faces and paws.
         let finer = root.length.clamp(0.05, 1.0).powf(FINER);
         for (width, profile) in widths.iter_mut().zip(&self.profile) {
             *width = profile * luck.width * finer;
+        }
+        // What is left of a cut hair has the profile that it had there.
+        if whole > length {
+            for (width, &zeta) in widths.iter_mut().zip(&self.zetas) {
+                let there = profile(class, f64::from(zeta * length / whole)) as f32;
+                *width = self.widest * there * luck.width * finer;
+            }
         }
         // Lying hair faces the sky with its flat side, upright hair looks back over its lay.
         let along = (points[1] - points[0]).normalize_or(root.normal);
@@ -235,7 +273,7 @@ impl<'a> Grower<'a> {
     /// down.
     fn step(&self, from: Vec3, root: &Root, lean: &Lean, zetas: [f32; 2], length: f32) -> Vec3 {
         let middle = 0.5 * (zetas[0] + zetas[1]);
-        let bend = self.class.bend_deg.to_radians() as f32;
+        let bend = self.class.bend_deg.to_radians() as f32 * self.dry();
         let angle = (lean.emergence - bend * middle).max(LOWEST);
         let (mut normal, mut combing) = (root.normal, lean.combing);
         let field = self.field.filter(|field| length > 2.0 * field.cell());
@@ -314,6 +352,65 @@ impl Crimp {
         let (sin, cos) = self.roll.sin_cos();
         let across = lean.combing.cross(root.normal) * cos + root.normal * (0.5 * sin);
         across * (self.amplitude * grown * wave)
+    }
+}
+
+/// The helix of a curl, the same for all hairs of a clump: they curl as one.
+struct Curl {
+    radius: f32,
+    wavenumber: f32,
+    phase: f32,
+}
+
+impl Curl {
+    /// * `phase`: -1..1, of the clump.
+    fn new(class: &ClassGroom, step: f32, phase: f32) -> Self {
+        // As for the crimp: stretched along and across where points are too few.
+        let natural = class.curl_pitch_mm as f32 * 1e-3;
+        let pitch = natural.max(POINTS_PER_WAVE * step);
+        Self {
+            radius: class.curl_mm as f32 * 1e-3 * (pitch / natural),
+            wavenumber: TAU / pitch,
+            phase: phase * 0.5 * TAU,
+        }
+    }
+
+    fn offset(&self, lean: &Lean, root: &Root, along: f32) -> Vec3 {
+        if self.radius == 0.0 {
+            return Vec3::ZERO;
+        }
+        let grown = (along * self.wavenumber / TAU).min(1.0);
+        let (sin, cos) = (along * self.wavenumber + self.phase).sin_cos();
+        let across = lean.combing.cross(root.normal);
+        (across * cos + root.normal * sin) * (self.radius * grown)
+    }
+}
+
+/// The wandering of a single hair: a slow wave in each of two directions, growing toward the tip.
+struct Frizz {
+    across: [Vec3; 2],
+    amplitude: f32,
+    phases: [f32; 2],
+}
+
+impl Frizz {
+    fn new(class: &ClassGroom, root: &Root, luck: &Luck) -> Self {
+        Self {
+            across: [root.combing.cross(root.normal), root.normal],
+            amplitude: class.frizz_mm as f32 * 1e-3,
+            phases: luck.frizz,
+        }
+    }
+
+    fn offset(&self, zeta: f32) -> Vec3 {
+        if self.amplitude == 0.0 {
+            return Vec3::ZERO;
+        }
+        let wave = |k: usize| {
+            let turns = FRIZZ_WAVES * zeta * (1.0 - 0.35 * k as f32);
+            (TAU * turns + self.phases[k]).sin()
+        };
+        (self.across[0] * wave(0) + self.across[1] * wave(1)) * (self.amplitude * zeta)
     }
 }
 

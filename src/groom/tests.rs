@@ -65,6 +65,11 @@ pub(super) fn fox() -> Species {
         roll_deg: 90.0,
         crimp_mm: 0.0,
         crimp_wavelength_mm: 2.0,
+        curl_mm: 0.0,
+        curl_pitch_mm: 10.0,
+        frizz_mm: 0.0,
+        trim_mm: f64::INFINITY,
+        wet: 0.0,
         clump: 0.2,
         clump_mm: 4.0,
     };

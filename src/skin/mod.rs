@@ -155,6 +155,13 @@ impl Skin {
         self.floor = self.floor.map(|height| height * factor);
     }
 
+    /// Multiplies the color of each vertex; of tints that are not one a vertex, as many as there are.
+    pub fn tint(&mut self, tints: &[Vec3]) {
+        for (color, tint) in self.color.iter_mut().zip(tints) {
+            *color *= *tint;
+        }
+    }
+
     /// The corners of triangle `index`.
     pub fn corners(&self, index: usize) -> [Vec3; 3] {
         self.triangles[index].map(|v| self.positions[v as usize])

@@ -245,7 +245,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     }
     let given = args.table.iter().map(|path| material::given_table(path));
     let given = given.collect::<Result<Vec<_>, Failure>>()?;
-    let skin = skin::load_placed(
+    let mut skin = skin::load_placed(
         &args.skin,
         Placing {
             unit_m: match args.skin_units {
@@ -276,6 +276,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     };
     let groom = groom::grow(&skin, &species, &settings, console, cancel)?;
     stages.end("groom");
+    skin.tint(&groom.skin_tint);
     for warning in &groom.warnings {
         console.say(format!("warning: {warning}"));
     }

@@ -14,15 +14,20 @@ use super::follicle::Surface;
 use crate::progress::{Cancel, Silent};
 use crate::sampling::hash64;
 use crate::skin::Skin;
-use crate::species::{CoatPattern, CoatRecipe, MAX_ZONES};
+use crate::species::{CoatPattern, CoatRecipe, MAX_ZONES, Species};
 use glam::Vec3;
 use net::Net;
+use rayon::prelude::*;
 use turing::POINTS_A_WAVE;
 
 /// Most points of a net; larger skins or finer patterns get a coarser one, which is said.
 const MOST_POINTS: f64 = 250_000.0;
 /// Least points, so that borders are where they should be.
 const LEAST_POINTS: f64 = 6_000.0;
+
+/// How strongly a thick coat darkens with the root of its pigment, and how much light gets to its depth.
+const DEPTH: f64 = 1.6;
+const SHADE: f64 = 0.6;
 
 /// Shares of the zones at each point; zone 0 is the species' own.
 type Shares = [f32; MAX_ZONES + 1];
@@ -71,6 +76,36 @@ impl Coat {
             seed,
             warnings,
         })
+    }
+
+    /// What shines through a thin coat at each vertex of the skin: a factor on the species' skin color, as
+    /// dark or pale as the depth of the painted hair.
+    pub(super) fn skin_tint(&self, skin: &Skin, species: &Species) -> Vec<Vec3> {
+        let own = Vec3::from_array(species.skin_color.map(|c| c as f32)).max(Vec3::splat(0.01));
+        let pigments = species.pigments(0);
+        let deep = |zone: usize| {
+            let root = pigments[zone][pigments[zone].len() - 1];
+            // Light that returns from many hairs goes with the root of their absorption; the depth of
+            // a coat is in shade.
+            let radius = crate::species::REFERENCE_RADIUS_UM;
+            let returned = |a: f64| SHADE * (-DEPTH * (a * radius).sqrt()).exp();
+            Vec3::from_array(root.absorption_per_um().map(|a| returned(a) as f32)) / own
+        };
+        let tints: Vec<Vec3> = (0..pigments.len())
+            .map(|zone| if zone == 0 { Vec3::ONE } else { deep(zone) })
+            .collect();
+        let at = |i: usize| {
+            let mut sum = Vec3::ZERO;
+            let mut all = 0.0;
+            for (point, weight) in self.net.weights(skin.positions[i], skin.normals[i]) {
+                for (tint, share) in tints.iter().zip(&self.shares[point as usize]) {
+                    sum += *tint * (weight * share);
+                    all += weight * share;
+                }
+            }
+            if all > 0.0 { sum / all } else { Vec3::ONE }
+        };
+        (0..skin.positions.len()).into_par_iter().map(at).collect()
     }
 
     /// The zone of a hair, and the factor on its length.

@@ -28,6 +28,11 @@ impl Reader<'_> {
             roll_deg: number(table, "roll_deg").unwrap_or(90.0),
             crimp_mm: number(table, "crimp_mm")?,
             crimp_wavelength_mm: number(table, "crimp_wavelength_mm")?,
+            curl_mm: number(table, "curl_mm").unwrap_or(0.0),
+            curl_pitch_mm: number(table, "curl_pitch_mm").unwrap_or(10.0),
+            frizz_mm: number(table, "frizz_mm").unwrap_or(0.0),
+            trim_mm: number(table, "trim_mm").unwrap_or(f64::INFINITY),
+            wet: number(table, "wet").unwrap_or(0.0),
             clump: number(table, "clump")?,
             clump_mm: number(table, "clump_mm")?,
         })

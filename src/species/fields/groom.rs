@@ -79,6 +79,31 @@ pub(super) static GROOM: Shape = Shape {
             Kind::Number(number(0.1, 1000.0, "mm")),
             "Wavelength of the crimp.",
         ),
+        Field::optional(
+            "curl_mm",
+            Kind::Number(number(0.0, 50.0, "mm")),
+            "Radius of curls, 0 none; 0 when left out. Hairs of a clump curl together.",
+        ),
+        Field::optional(
+            "curl_pitch_mm",
+            Kind::Number(number(0.5, 1000.0, "mm")),
+            "Way along the hair in one turn of a curl; 10 when left out.",
+        ),
+        Field::optional(
+            "frizz_mm",
+            Kind::Number(number(0.0, 50.0, "mm")),
+            "How far single hairs wander from their course, at the tip; 0 when left out.",
+        ),
+        Field::optional(
+            "trim_mm",
+            Kind::Number(number(0.1, 5000.0, "mm")),
+            "Hairs are cut to this length, with blunt ends; uncut when left out.",
+        ),
+        Field::optional(
+            "wet",
+            Kind::Number(number(0.0, 1.0, "")),
+            "How wet: hairs lie down and stick together in larger clumps, 0 dry .. 1; 0 when left out.",
+        ),
         Field::required(
             "clump",
             Kind::Number(number(0.0, 1.0, "")),

@@ -160,6 +160,16 @@ pub struct ClassGroom {
     pub crimp_mm: f64,
     /// Wavelength of the crimp, millimeters.
     pub crimp_wavelength_mm: f64,
+    /// Radius of curls, millimeters, 0 none.
+    pub curl_mm: f64,
+    /// Way along the hair in one turn of a curl, millimeters.
+    pub curl_pitch_mm: f64,
+    /// How far single hairs wander from their course at the tip, millimeters.
+    pub frizz_mm: f64,
+    /// Hairs are cut to this length, millimeters; infinity for uncut ones.
+    pub trim_mm: f64,
+    /// How wet, 0 dry .. 1.
+    pub wet: f64,
     /// Share of the way to the clump's center at the tip, 0..1.
     pub clump: f64,
     /// Size of a clump, millimeters.
