@@ -30,6 +30,7 @@ const MOST_LEVELS: usize = 4;
   vair export red-fox -o fox.usdc
   vair export mink --skin sofa.obj --strands 1e6 -o sofa.usdc
   vair export red-fox --profile unreal --units cm --up z -o fox.usd
+  vair export cat --coat tabby -o tabby.usdc
   vair export red-fox --layout payload -o fox.usda
   vair export lynx --profile blender --levels 1 -o lynx.usdc
   vair export cat --strands 500 --curves phantom -o cat.usda
@@ -49,6 +50,10 @@ threads.")]
 pub(super) struct Args {
     /// A built-in species or a path to a species file.
     name: String,
+    /// Pattern of the coat: tabby, leopard, zebra, badger, fox, cow, countershaded, siamese,
+    /// tortoiseshell, the path of a recipe, or none; if not given, that of the species.
+    #[arg(long, value_name = "NAME")]
+    coat: Option<String>,
     /// What the fur grows on: body, ball, swatch, tress, or an OBJ, PLY or glTF mesh in meters.
     #[arg(long, default_value = "body")]
     skin: String,
@@ -166,7 +171,10 @@ impl From<ExportError> for Failure {
 
 fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     // All that can be refused is refused before any work.
-    let species = species::load(&args.name, &args.set)?;
+    let mut species = species::load(&args.name, &args.set)?;
+    if let Some(coat) = &args.coat {
+        species.wear(coat)?;
+    }
     let settings = settings(args)?;
     let grids = volume::settings(&args.volume, &args.output, settings.frame)?;
     for output in &args.output {
