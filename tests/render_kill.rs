@@ -13,7 +13,7 @@ fn hash(index: u64) -> u64 {
 }
 
 /// No bake, a small ball of fur.
-const RENDER: &str = "-q render red-fox --model chiang --skin ball --strands 3000 --res 48x36 --no-ground --threads 1";
+const RENDER: &str = "-q render red-fox --model chiang --skin ball --strands 800 --res 32x24 --no-ground --threads 1";
 
 #[test]
 fn killed_at_any_moment_it_leaves_the_old_or_the_new_picture_and_goes_on() {

@@ -34,7 +34,7 @@ def cpu():
 
 def z_up(v):
     """A turn that puts Y up to Z up and the middle of the environment where Cycles has it."""
-    return np.asarray(v)[..., [2, 0, 1]]
+    return np.asarray(v)[..., [2, 0, 1]] * [-1, -1, 1]
 
 
 xml = ET.parse(os.path.join(args.folder, "scene.xml")).getroot()

@@ -15,6 +15,8 @@ pub(super) enum Purpose {
     Choice = 4,
     /// The direction in which the path goes on.
     Continue = 5,
+    /// Place on the lens.
+    Lens = 6,
 }
 
 /// The numbers of sample `index` of one pixel.

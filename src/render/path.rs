@@ -72,7 +72,12 @@ impl Integrator<'_> {
             (x as f32 + 0.5 + offset[0]) / width as f32,
             (y as f32 + 0.5 + offset[1]) / height as f32,
         ];
-        let ray = self.camera.ray(at[0], at[1]);
+        let ray = if self.camera.has_lens() {
+            let lens = draws.point(0, Purpose::Lens);
+            self.camera.ray_through(at[0], at[1], [lens[0], lens[1]])
+        } else {
+            self.camera.ray(at[0], at[1])
+        };
         let mut out = Sample {
             rays: 1,
             ..Sample::default()

@@ -1,6 +1,7 @@
-//! A pinhole camera that finds its own place in front of the subject.
+//! A camera that finds its own place in front of the subject: a pinhole, or a thin lens.
 
 use crate::accel::Ray;
+use crate::sampling::concentric_disk;
 use glam::{Mat3, Vec3};
 
 /// How to look at the subject. Angles in degrees.
@@ -19,6 +20,11 @@ pub struct View {
     pub margin: f32,
     /// Shift of the target across and up the picture, as a share of the subject's radius.
     pub shift: [f32; 2],
+    /// Diameter of the lens, scene units (millimeters); 0 for a pinhole, which sees all sharp.
+    pub lens: f32,
+    /// Distance from the camera, along its axis, of the plane that is sharp, scene units; `None` for the
+    /// point of the subject that is nearest to the camera.
+    pub focus: Option<f32>,
 }
 
 impl Default for View {
@@ -30,6 +36,8 @@ impl Default for View {
             zoom: 1.0,
             margin: 0.07,
             shift: [0.0, 0.0],
+            lens: 0.0,
+            focus: None,
         }
     }
 }
@@ -53,6 +61,9 @@ pub struct Camera {
     axes: Mat3,
     /// Half the picture at unit distance.
     half: [f32; 2],
+    /// Radius of the lens and distance of what is sharp.
+    lens: f32,
+    focus: f32,
 }
 
 impl Camera {
@@ -74,11 +85,15 @@ impl Camera {
         let (position, radius) = place(points, axes, half.map(|h| h * (1.0 - 2.0 * view.margin)));
         // Zooming narrows the view rather than walking up to the fur: the perspective stays.
         let half = half.map(|h| h / view.zoom);
+        let depth = |p: &Vec3| (position - *p).dot(backward);
+        let nearest = points.iter().map(depth).reduce(f32::min);
         let shift = axes * Vec3::new(view.shift[0], view.shift[1], 0.0) * radius;
         Self {
             position: position + shift,
             axes,
             half,
+            lens: 0.5 * view.lens,
+            focus: view.focus.or(nearest).unwrap_or(1.0).max(1e-3),
         }
     }
 
@@ -95,6 +110,33 @@ impl Camera {
             origin: self.position,
             dir: (self.axes * film).normalize(),
         }
+    }
+
+    /// The ray through a point of the picture and a point of the lens.
+    ///
+    /// * `x`, `y`: 0..1 from the left and from the top. * `u`: two numbers in `[0, 1)` that choose the point
+    ///   of the lens; without effect for a pinhole.
+    pub fn ray_through(&self, x: f32, y: f32, u: [f32; 2]) -> Ray {
+        let ray = self.ray(x, y);
+        if self.lens <= 0.0 {
+            return ray;
+        }
+        // All rays of a point of the picture meet where the one through the middle of the lens meets the
+        // sharp plane.
+        let along = -ray.dir.dot(self.axes.z_axis);
+        let meeting = ray.origin + ray.dir * (self.focus / along);
+        let (a, b) = concentric_disk(f64::from(u[0]), f64::from(u[1]));
+        let offset = Vec3::new(a as f32, b as f32, 0.0) * self.lens;
+        let origin = ray.origin + self.axes * offset;
+        Ray {
+            origin,
+            dir: (meeting - origin).normalize(),
+        }
+    }
+
+    /// Whether there is a lens, whose points have to be chosen.
+    pub fn has_lens(&self) -> bool {
+        self.lens > 0.0
     }
 
     /// Picture coordinates of a point, 0..1 from the left and from the top, if it is in front.
@@ -191,6 +233,48 @@ mod tests {
                 assert!(fill > 1.0 - 2.0 * view.margin - 1e-3, "{fill}");
             }
         }
+    }
+
+    #[test]
+    fn a_lens_is_sharp_at_its_focus_only() {
+        let points = [Vec3::ZERO, Vec3::ONE];
+        let view = View {
+            lens: 0.5,
+            focus: Some(3.0),
+            ..View::default()
+        };
+        let camera = Camera::framing(&points, &view, 1.5);
+        let middle = camera.ray(0.3, 0.6);
+        let sharp = middle.origin + middle.dir * (3.0 / -middle.dir.dot(camera.axes.z_axis));
+        let mut spread = 0.0f32;
+        for i in 0..64 {
+            let u = [(i % 8) as f32 / 8.0, (i / 8) as f32 / 8.0];
+            let ray = camera.ray_through(0.3, 0.6, u);
+            let from = ray.origin - camera.position;
+            assert!(from.length() < 0.2501 && from.dot(camera.axes.z_axis).abs() < 1e-5);
+            assert!((sharp - ray.origin).cross(ray.dir).length() < 1e-4);
+            let beyond = 2.0 * sharp - camera.position;
+            spread = spread.max((beyond - ray.origin).cross(ray.dir).length());
+        }
+        assert!(spread > 0.2, "{spread}");
+        // The nearest point of the subject is sharp if nothing is said, and a pinhole has no lens.
+        let camera = Camera::framing(
+            &points,
+            &View {
+                focus: None,
+                ..view
+            },
+            1.5,
+        );
+        let nearest = (points.iter())
+            .map(|p| (camera.position - *p).dot(camera.axes.z_axis))
+            .fold(f32::MAX, f32::min);
+        assert!((camera.focus - nearest).abs() < 1e-4);
+        let pinhole = Camera::framing(&points, &View::default(), 1.5);
+        assert!(
+            !pinhole.has_lens()
+                && pinhole.ray_through(0.1, 0.1, [0.9; 2]).origin == pinhole.position
+        );
     }
 
     #[test]

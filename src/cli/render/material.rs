@@ -1,6 +1,6 @@
 //! What scatters light: tables or a model in closed form.
 
-use super::{Args, ModelArg};
+use super::args::{Args, ModelArg};
 use crate::assembly;
 use crate::bake::{Cache, Settings};
 use crate::blame::Blame;

@@ -1,0 +1,207 @@
+//! Arguments of `vair render`.
+
+use super::{output, parse};
+use crate::bsdf::ChiangParameters;
+use crate::cli::bake::parse_count;
+use crate::render::Crop;
+use std::path::PathBuf;
+
+/// The arguments.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  vair render red-fox -o red-fox.png
+  vair render polar-bear --env sky --res 1280x720 --spp 128 -o bear.png -o bear.exr
+  vair render harbor-seal --azimuths 8 -o seal.png
+  vair render red-fox --table guard-small.exr --table under-small.exr -o fox.png
+  vair render red-fox --model chiang-fit -o shader.png
+  vair render cat --coat leopard -o leopard.png
+  vair render mink --skin sofa.obj --strands 1e6 -o sofa.png
+  vair render red-fox --crop 200,150,64,64 --spp 256 -o eye.exr")]
+pub(in crate::cli) struct Args {
+    /// A built-in species or a path to a species file.
+    pub(super) name: String,
+    /// Pattern of the coat: tabby, leopard, zebra, badger, fox, cow, countershaded, siamese,
+    /// tortoiseshell, the path of a recipe, or none; if not given, that of the species.
+    #[arg(long, value_name = "NAME")]
+    pub(super) coat: Option<String>,
+    /// What the fur grows on: body, ball, swatch, tress, or an OBJ, PLY or glTF mesh.
+    #[arg(long, default_value = "body")]
+    pub(super) skin: String,
+    /// What a unit of the skin's file is.
+    #[arg(long, value_enum, default_value = "m")]
+    pub(super) skin_units: UnitArg,
+    /// Which axis of the skin's file points up.
+    #[arg(long, value_enum, default_value = "y")]
+    pub(super) skin_up: UpArg,
+    /// The light: studio, sky, white, or a latitude-longitude EXR or HDR file.
+    #[arg(long, default_value = "studio")]
+    pub(super) env: String,
+    /// Turns the light about the vertical, degrees.
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    pub(super) env_turn: f32,
+    /// Shows the environment behind the subject instead of a backdrop.
+    #[arg(long)]
+    pub(super) env_visible: bool,
+    /// Width and height of the picture.
+    #[arg(long, value_parser = parse::size, default_value = "640x480")]
+    pub(super) res: [u32; 2],
+    /// Samples a pixel; 32 if not given.
+    #[arg(long)]
+    pub(super) spp: Option<u32>,
+    /// Renders only these samples of every pixel, from the first to one before the last: `0..64`. Ranges
+    /// written to .safetensors files are put together by `vair merge`, to the bit what one run gives.
+    #[arg(long, value_parser = parse::samples, value_name = "A..B", conflicts_with_all = ["spp", "target_error"])]
+    pub(super) samples: Option<[u32; 2]>,
+    /// Ends tile by tile where the noise is below this many per cent of the tile's light; `--spp` is the
+    /// most samples then, and 4096 if it is not given.
+    #[arg(long, value_name = "PERCENT", value_parser = parse::percent)]
+    pub(super) target_error: Option<f64>,
+    /// Saves all samples to this file now and then and when stopped, and goes on from it if it is there. It
+    /// goes when the picture is done.
+    #[arg(long, value_name = "FILE")]
+    pub(super) checkpoint: Option<PathBuf>,
+    /// Seconds between two saves of the checkpoint.
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = parse::seconds)]
+    pub(super) checkpoint_every: f64,
+    /// Renders only a part of the frame, with the same pixels: x,y,width,height.
+    #[arg(long, value_parser = parse::crop)]
+    pub(super) crop: Option<Crop>,
+    /// Stops after so many seconds with the samples there are.
+    #[arg(long, value_name = "SECONDS")]
+    pub(super) time: Option<f64>,
+    /// How directions are drawn; all give the same picture.
+    #[arg(long, value_enum, default_value = "qsir")]
+    pub(super) sampler: SamplerArg,
+    /// How samples spread over and around their pixel.
+    #[arg(long, value_enum, default_value = "gaussian")]
+    pub(super) filter: FilterArg,
+    /// What scatters light: the baked tables, the hair model of Chiang et al. 2016 (Mitsuba, pbrt and
+    /// Cycles have it too) with given numbers, or that model as near to the tables as it comes.
+    #[arg(long, value_enum, default_value = "table")]
+    pub(super) model: ModelArg,
+    /// Numbers of `--model chiang`; absorption is per radius.
+    #[arg(
+        long,
+        value_parser = parse::chiang,
+        value_name = "KEY=VALUE,..",
+        default_value = "sigma_a=0.06:0.10:0.20,beta_m=0.3,beta_n=0.3,alpha=2,eta=1.55",
+        allow_hyphen_values = true
+    )]
+    pub(super) chiang: ChiangParameters,
+    /// Also writes strands, skin, light and camera to this folder as a scene for Mitsuba 3; needs
+    /// `--model chiang`.
+    #[arg(long, value_name = "FOLDER")]
+    pub(super) mitsuba: Option<PathBuf>,
+    /// Strands in all; if not given, as many as the animal has, at most 250000.
+    #[arg(long, value_parser = parse_count)]
+    pub(super) strands: Option<u64>,
+    /// Photons for each scattering table that has to be baked.
+    #[arg(long, value_parser = parse_count, default_value = "3e6")]
+    pub(super) bake_photons: u64,
+    /// Tell so many azimuths of flat hairs apart: they glint as they turn. The photons are then those of
+    /// each. 1 averages over azimuths.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(super) azimuths: usize,
+    /// A table to use instead of baking, packed or not: for the stations of its hair class. May repeat.
+    #[arg(long, value_name = "FILE")]
+    pub(super) table: Vec<PathBuf>,
+    /// Camera: degrees around the subject (0 is +Z, 90 is +X) and above it; if not given, the side from
+    /// which the skin looks best.
+    #[arg(long, value_parser = parse::pair, value_name = "YAW,PITCH", allow_hyphen_values = true)]
+    pub(super) view: Option<[f32; 2]>,
+    /// Field of view along the shorter side, degrees.
+    #[arg(long)]
+    pub(super) fov: Option<f32>,
+    /// 1 frames the subject, 2 shows half of it.
+    #[arg(long)]
+    pub(super) zoom: Option<f32>,
+    /// Shifts the camera across and up, in radii of the subject.
+    #[arg(long, value_parser = parse::pair, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(super) shift: Option<[f32; 2]>,
+    /// Diameter of the lens, millimeters: what is not at the distance of `--focus` blurs. 0 is a pinhole.
+    #[arg(long, value_name = "MM", default_value_t = 0.0)]
+    pub(super) lens: f32,
+    /// Distance from the camera that is sharp, millimeters; if not given, the nearest point of the subject.
+    #[arg(long, value_name = "MM", requires = "lens")]
+    pub(super) focus: Option<f32>,
+    /// Leaves out the floor.
+    #[arg(long)]
+    pub(super) no_ground: bool,
+    #[command(flatten)]
+    pub(super) look: output::Look,
+    /// Seed of fiber, fur and picture.
+    #[arg(long, default_value_t = 0)]
+    pub(super) seed: u64,
+    /// Another seed for the noise of the picture alone.
+    #[arg(long, value_name = "SEED")]
+    pub(super) picture_seed: Option<u64>,
+    /// Writes times, rays and memory to this JSON file.
+    #[arg(long, value_name = "FILE")]
+    pub(super) stats: Option<PathBuf>,
+    /// Threads; all cores if not given. The picture does not depend on it.
+    #[arg(long)]
+    pub(super) threads: Option<usize>,
+    /// Override a field of the species: `guard.pigment.0.eumelanin=2`. May repeat.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(super) set: Vec<String>,
+    /// Bake even if the cache holds the tables, and do not store them there.
+    #[arg(long)]
+    pub(super) no_cache: bool,
+    /// Where the picture goes: .png or .exr, or .safetensors for its sums. May repeat.
+    #[arg(long, short, required = true)]
+    pub(super) output: Vec<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(super) enum UnitArg {
+    /// Meters.
+    M,
+    /// Centimeters.
+    Cm,
+    /// Millimeters.
+    Mm,
+    /// Inches.
+    In,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(super) enum UpArg {
+    /// Y, as in glTF.
+    Y,
+    /// Z, as in Blender.
+    Z,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(super) enum SamplerArg {
+    /// Resampled products of scattering and environment.
+    Qsir,
+    /// Resampled products, one ray for direct and indirect light.
+    QsirOneRay,
+    /// The scattering table alone.
+    Bsdf,
+    /// The environment for direct light.
+    Env,
+    /// Both, by multiple importance sampling.
+    Mis,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(super) enum FilterArg {
+    /// A narrow Gaussian.
+    Gaussian,
+    /// Even over the pixel.
+    Box,
+    /// A tent of two pixels.
+    Tent,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
+pub(super) enum ModelArg {
+    /// Photons baked into tables.
+    Table,
+    /// The model with the numbers of `--chiang`.
+    Chiang,
+    /// The model fitted to the tables.
+    ChiangFit,
+}
