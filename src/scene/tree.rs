@@ -26,7 +26,7 @@ pub(super) struct Run {
     pub(super) segments: u8,
 }
 
-/// Nodes one below the other at most; below [`build::EVEN`] halves are even.
+/// Nodes one below the other at most: in the lowest ones runs are halved evenly, whatever that costs.
 const DEPTH: usize = 24;
 /// References set aside at most.
 const STACK: usize = DEPTH * (CHILDREN - 1) + 1;
