@@ -37,3 +37,6 @@ pub mod scene;
 pub mod skin;
 pub mod species;
 pub mod table;
+
+/// Name and version of this program, as its files say who made them.
+pub(crate) const PROGRAM: &str = concat!("vair ", env!("CARGO_PKG_VERSION"));

@@ -177,7 +177,7 @@ impl Plan {
                 photon_seed: self.settings.photon_seed,
                 max_events: self.settings.max_events,
                 content: Recipe::content(recipe, photons),
-                program: concat!("vair ", env!("CARGO_PKG_VERSION")).to_owned(),
+                program: crate::PROGRAM.to_owned(),
                 ..provenance.clone()
             },
         };

@@ -23,6 +23,7 @@ use field::Field;
 use follicle::Surface;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+use std::ops::Range;
 use strand::{CLASS_SHIFT, Grower};
 
 /// All strands. Strand `i` has control points `points[offsets[i]..offsets[i + 1]]`, at least two,
@@ -76,9 +77,14 @@ impl Groom {
         self.class.len()
     }
 
+    /// Where the control points of strand `index` stand in `points`, and their widths in `widths`.
+    pub fn range(&self, index: usize) -> Range<usize> {
+        self.offsets[index] as usize..self.offsets[index + 1] as usize
+    }
+
     /// Control points of strand `index`, root first.
     pub fn strand(&self, index: usize) -> &[Vec3] {
-        &self.points[self.offsets[index] as usize..self.offsets[index + 1] as usize]
+        &self.points[self.range(index)]
     }
 }
 

@@ -66,7 +66,7 @@ fn encode(film: &Film, provenance: &Provenance<'_>) -> Image<Layer<AnyChannels<F
         .collect();
     let mut layer = LayerAttributes {
         layer_position: Vec2(crop.x as i32, crop.y as i32),
-        software_name: Some(Text::from(concat!("vair ", env!("CARGO_PKG_VERSION")))),
+        software_name: Some(Text::from(crate::PROGRAM)),
         ..LayerAttributes::named("film")
     };
     let json = serde_json::Value::Object(text).to_string();

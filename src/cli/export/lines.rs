@@ -1,6 +1,7 @@
 //! The part of `vair export` that writes plain strands.
 
 use super::super::{Console, Failure};
+use crate::PROGRAM;
 use crate::export::asset::{self, Frame, Parts};
 use crate::export::lines::{self, LineFormat, LineSet, LinesError};
 use std::path::Path;
@@ -28,11 +29,8 @@ pub(super) fn run(
         colors: asset::colors(groom, parts.species),
     };
     let origin = format!(
-        "{} on {}, seed {}, by vair {}",
-        parts.species.id,
-        parts.skin.name,
-        parts.seed,
-        env!("CARGO_PKG_VERSION")
+        "{} on {}, seed {}, by {PROGRAM}",
+        parts.species.id, parts.skin.name, parts.seed
     );
     lines::write(path, format, &set.lines(&origin))?;
     console.say(format!(

@@ -78,7 +78,7 @@ pub(in crate::cli) fn write(
 ) -> Result<(), Failure> {
     let seed = origin.seed.to_string();
     let provenance = [
-        ("program", concat!("vair ", env!("CARGO_PKG_VERSION"))),
+        ("program", crate::PROGRAM),
         ("species", origin.species.as_str()),
         ("species_text", origin.species_text.as_str()),
         ("settings", origin.settings.as_str()),

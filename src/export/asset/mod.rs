@@ -93,7 +93,7 @@ pub fn check(groom: &Groom) -> Result<(), ExportError> {
         return Err(ExportError::Empty);
     }
     let fault = |index: usize| -> Option<&'static str> {
-        let range = groom.offsets[index] as usize..groom.offsets[index + 1] as usize;
+        let range = groom.range(index);
         if !groom.points[range.clone()].iter().all(|p| p.is_finite()) {
             return Some("a point");
         }

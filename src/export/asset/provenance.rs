@@ -1,6 +1,7 @@
 //! What a file says of where it comes from.
 
 use super::Parts;
+use crate::PROGRAM;
 use crate::export::usd::{Attribute, Dictionary, Prim, Value};
 use sha2::{Digest as _, Sha256};
 
@@ -49,9 +50,6 @@ pub(super) fn recipe<'a>(parts: &Parts<'_>) -> Dictionary<'a> {
     let entries = entries.into_iter().map(|(k, v)| (k.to_owned(), v));
     vec![("vair".to_owned(), Value::Dictionary(entries.collect()))]
 }
-
-/// Name and version of this program.
-pub(super) const PROGRAM: &str = concat!("vair ", env!("CARGO_PKG_VERSION"));
 
 /// What Blender shows as custom properties.
 pub(super) fn user_properties(prim: &mut Prim<'_>, properties: &[(&str, Value<'static>)]) {

@@ -94,9 +94,7 @@ impl<'a> Strands<'a> {
     pub(super) fn widths(&self) -> Array<'a> {
         let this = self.clone();
         Array::Float(self.vertex(move |strand, out: &mut Vec<f32>| {
-            let range =
-                this.groom.offsets[strand] as usize..this.groom.offsets[strand + 1] as usize;
-            let widths = this.groom.widths[range].iter();
+            let widths = this.groom.widths[this.groom.range(strand)].iter();
             out.extend(widths.map(|w| this.frame.length(w * this.widening)));
         }))
     }
@@ -157,9 +155,7 @@ impl<'a> Strands<'a> {
                     for &p in &points {
                         (lo, hi) = (lo.min(p), hi.max(p));
                     }
-                    let strand = self.strand(row);
-                    let range = self.groom.offsets[strand] as usize
-                        ..self.groom.offsets[strand + 1] as usize;
+                    let range = self.groom.range(self.strand(row));
                     for &width in &self.groom.widths[range] {
                         widest = widest.max(self.frame.length(width * self.widening));
                     }

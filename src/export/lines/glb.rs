@@ -52,7 +52,7 @@ pub(super) fn write(out: &mut impl Write, lines: &Lines<'_>) -> Result<(), Write
         attributes["COLOR_0"] = json!(2);
     }
     let document = json!({
-        "asset": { "version": "2.0", "generator": concat!("vair ", env!("CARGO_PKG_VERSION")) },
+        "asset": { "version": "2.0", "generator": crate::PROGRAM },
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
         "nodes": [{ "mesh": 0, "name": "strands", "extras": { "origin": lines.origin } }],

@@ -105,8 +105,7 @@ pub fn write_fiber<W: Write + Seek>(
         .collect();
     progress.finish();
     let blocks: Vec<Block> = blocks?.into_iter().flatten().collect();
-    let creator = concat!("vair ", env!("CARGO_PKG_VERSION"));
-    let mut writer = Writer::new(out, Compression::Zip, creator)?;
+    let mut writer = Writer::new(out, Compression::Zip, crate::PROGRAM)?;
     let mut scalars = |name: &str, class, unit, background, pick: fn(&Block) -> &Leaf<f32>| {
         let leaves = blocks.iter().map(|block| pick(block).clone()).collect();
         let tree = Tree::new(background, leaves, Vec::new())?;

@@ -165,8 +165,7 @@ pub fn write<W: Write + Seek>(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<(W, Vec<Written>), VolumeError> {
-    let creator = concat!("vair ", env!("CARGO_PKG_VERSION"));
-    let mut writer = Writer::new(out, settings.compression, creator)?;
+    let mut writer = Writer::new(out, settings.compression, crate::PROGRAM)?;
     let mut written = Vec::new();
     let of = |voxels: &[Moments], origin| {
         let fields = settings.fields.iter().filter(|f| **f != Field::Surface);

@@ -58,7 +58,7 @@ pub(super) fn encode(name: &str, period_um: f64, parts: &[MeshPart]) -> Vec<u8> 
     let document = json!({
         "asset": {
             "version": "2.0",
-            "generator": concat!("vair ", env!("CARGO_PKG_VERSION")),
+            "generator": crate::PROGRAM,
             "extras": { "period_um": period_um, "unit_um": 1.0, "axis": "y" },
         },
         "scene": 0,
