@@ -28,12 +28,17 @@ impl Curves {
         }
     }
 
-    /// Number of control points that `points` of the groom become.
+    /// Number of control points that `points` of one strand become.
     pub fn count(self, points: usize) -> usize {
+        self.total(1, points)
+    }
+
+    /// Number of control points that those of all `strands` together become: `points` of the groom.
+    pub fn total(self, strands: usize, points: usize) -> usize {
         match self {
             Self::Pinned | Self::Linear => points,
-            Self::Phantom => points + 2,
-            Self::Bezier => 3 * points.saturating_sub(1) + 1,
+            Self::Phantom => points + 2 * strands,
+            Self::Bezier => 3 * points.saturating_sub(strands) + strands,
         }
     }
 

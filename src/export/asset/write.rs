@@ -124,3 +124,57 @@ impl Job<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::asset::{Curves, Profile, Reader, levels};
+    use crate::groom::{GroomSettings, grow};
+    use crate::progress::Silent;
+    use crate::{skin, species};
+
+    /// Without the curves for viewports, which come on top.
+    #[test]
+    fn files_are_as_large_as_foretold() {
+        let skin = skin::load("tress").unwrap();
+        let fox = species::load("red-fox", &[]).unwrap();
+        let settings = GroomSettings {
+            strands: Some(6000),
+            seed: 0,
+        };
+        let cancel = Cancel::default();
+        let groom = grow(&skin, &fox, &settings, &Silent, &cancel).unwrap();
+        let parts = Parts {
+            groom: &groom,
+            skin: &skin,
+            species: &fox,
+            levels: &levels(&groom, &skin, &fox, 1).unwrap(),
+            looks: &[],
+            seed: 0,
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("fox.usdc");
+        for curves in [
+            Curves::Pinned,
+            Curves::Phantom,
+            Curves::Bezier,
+            Curves::Linear,
+        ] {
+            for readers in [&[][..], &[Reader::Unreal], &[Reader::Blender]] {
+                let settings = AssetSettings {
+                    curves,
+                    profile: Profile::of(readers),
+                    no_proxy: true,
+                    no_guides: true,
+                    ..AssetSettings::default()
+                };
+                write(&path, &parts, &settings, &Silent, &cancel).unwrap();
+                let size = std::fs::metadata(&path).unwrap().len() as f64;
+                let foretold = estimate(&skin, [6000, groom.points.len()], 1, &settings) as f64;
+                let off = foretold / size - 1.0;
+                println!("{curves:?} {readers:?}: {:.1} %", 100.0 * off);
+                assert!(off.abs() < 0.1, "{curves:?} {readers:?}: {size} {foretold}");
+            }
+        }
+    }
+}

@@ -7,6 +7,7 @@
 mod binary;
 mod layer;
 mod pieces;
+mod spelling;
 mod text;
 mod value;
 
