@@ -77,6 +77,23 @@ fn a_payload_goes_beside_the_interface() {
 }
 
 #[test]
+fn names_may_have_the_sign_that_ends_a_path() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [
+        "--strands",
+        "500",
+        "--layout",
+        "payload",
+        "-o",
+        "fox@2x.usda",
+    ];
+    assert!(export(folder.path(), &arguments).status.success());
+    let interface = fs::read_to_string(folder.path().join("fox@2x.usda")).unwrap();
+    assert!(interface.contains("identifier = @@@./fox@2x.usda@@@\n"));
+    assert!(interface.contains("payload = @@@./fox@2x.payload.usdc@@@\n"));
+}
+
+#[test]
 fn the_bytes_do_not_depend_on_threads() {
     let folder = tempfile::tempdir().unwrap();
     let written = |threads: &str| {

@@ -33,7 +33,7 @@ def arrays_of(path):
 
 def check_validators(stage, name):
     validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
-    # Without MaterialX in this build its nodes are unknown; check_materials.py has it.
+    # Without MaterialX in this build its nodes are unknown; check_blender.py has one that knows them.
     for error in UsdValidation.ValidationContext(validators).Validate(stage):
         if "ND_" in error.GetMessage():
             continue

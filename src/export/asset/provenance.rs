@@ -56,12 +56,7 @@ pub(super) fn user_properties(prim: &mut Prim<'_>, properties: &[(&str, Value<'s
     for (name, value) in properties {
         prim.add(Attribute {
             name: format!("userProperties:vair_{name}"),
-            type_name: match value {
-                Value::Float(_) => "float",
-                Value::Int(_) => "int",
-                Value::Vec3(_) => "float3",
-                _ => "string",
-            },
+            type_name: value.type_name(),
             custom: true,
             value: Some(value.clone()),
             ..Attribute::default()

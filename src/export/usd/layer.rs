@@ -28,8 +28,6 @@ pub enum Specifier {
     Def,
     /// Adds to one that is made elsewhere.
     Over,
-    /// A prim to inherit from.
-    Class,
 }
 
 impl Specifier {
@@ -38,7 +36,6 @@ impl Specifier {
         match self {
             Self::Def => "def",
             Self::Over => "over",
-            Self::Class => "class",
         }
     }
 }
@@ -86,12 +83,12 @@ pub struct VariantSet<'a> {
 pub enum Property<'a> {
     /// A value.
     Attribute(Attribute<'a>),
-    /// Names of other prims.
+    /// The name of another prim.
     Relationship {
         /// `material:binding`.
         name: String,
-        /// Absolute paths.
-        targets: Vec<String>,
+        /// Absolute path.
+        target: String,
     },
 }
 
@@ -108,8 +105,6 @@ pub struct Attribute<'a> {
     pub custom: bool,
     /// `vertex`, `uniform`, `constant`; empty for none.
     pub interpolation: &'static str,
-    /// For people.
-    pub documentation: String,
     /// The value, if it is not only connected or declared.
     pub value: Option<Value<'a>>,
     /// Absolute path of an attribute that gives the value instead.
@@ -186,7 +181,7 @@ impl<'a> Prim<'a> {
     pub fn relate(&mut self, name: impl Into<String>, target: impl Into<String>) {
         self.properties.push(Property::Relationship {
             name: name.into(),
-            targets: vec![target.into()],
+            target: target.into(),
         });
     }
 }

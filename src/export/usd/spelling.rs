@@ -47,6 +47,14 @@ pub(super) fn quoted(text: &str) -> String {
     out
 }
 
+/// The path of a file between signs that say where it ends; three of them where it has that sign itself.
+pub(super) fn asset(path: &str) -> String {
+    match path.contains('@') {
+        false => format!("@{path}@"),
+        true => format!("@@@{}@@@", path.replace("@@@", r"\@@@")),
+    }
+}
+
 pub(super) fn tuple(values: &[f32]) -> String {
     let mut out = String::new();
     push_tuple(values, &mut out);
@@ -100,5 +108,17 @@ fn special(value: f64) -> &'static str {
         "inf"
     } else {
         "-inf"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_may_have_the_sign_that_ends_them() {
+        assert_eq!(asset("./fox.usda"), "@./fox.usda@");
+        assert_eq!(asset("./fox@2x.usda"), "@@@./fox@2x.usda@@@");
+        assert_eq!(asset("./a@@@b@@.usda"), r"@@@./a\@@@b@@.usda@@@");
     }
 }

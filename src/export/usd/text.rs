@@ -2,8 +2,8 @@
 
 use super::layer::{Attribute, Layer, Prim, Property, VariantSet};
 use super::pieces;
-use super::spelling::{double, float, list, push, push_tuple, quoted, separated, tuple};
-use super::value::{Array, Dictionary, Value};
+use super::spelling::{asset, double, float, list, push, push_tuple, quoted, separated, tuple};
+use super::value::{Array, Dictionary, Rows, Value};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -125,7 +125,7 @@ impl Text<'_> {
         self.dictionary("assetInfo", &prim.asset_info)?;
         self.dictionary("customData", &prim.custom_data)?;
         if let Some(payload) = &prim.payload {
-            self.line(&format!("prepend payload = @{payload}@"))?;
+            self.line(&format!("prepend payload = {}", asset(payload)))?;
         }
         if !prim.variant_sets.is_empty() {
             let names: Vec<String> = prim.variant_sets.iter().map(|s| s.name.clone()).collect();
@@ -162,7 +162,7 @@ impl Text<'_> {
                 continue;
             }
             self.begin()?;
-            write!(self.out, "{} {key} = ", type_of(value))?;
+            write!(self.out, "{} {key} = ", value.type_name())?;
             self.value(value)?;
             self.out.write_all(b"\n")?;
         }
@@ -172,12 +172,8 @@ impl Text<'_> {
     fn property(&mut self, property: &Property<'_>) -> io::Result<()> {
         match property {
             Property::Attribute(attribute) => self.attribute(attribute),
-            Property::Relationship { name, targets } => {
-                let paths: Vec<String> = targets.iter().map(|t| format!("<{t}>")).collect();
-                match paths.as_slice() {
-                    [one] => self.line(&format!("rel {name} = {one}")),
-                    more => self.line(&format!("rel {name} = [{}]", more.join(", "))),
-                }
+            Property::Relationship { name, target } => {
+                self.line(&format!("rel {name} = <{target}>"))
             }
         }
     }
@@ -196,31 +192,20 @@ impl Text<'_> {
                 self.out.write_all(b" = ")?;
                 self.value(value)?;
             }
-            self.attribute_metadata(attribute)?;
-            self.out.write_all(b"\n")?;
+            if attribute.interpolation.is_empty() {
+                self.out.write_all(b"\n")?;
+            } else {
+                self.out.write_all(b" (\n")?;
+                self.depth += 1;
+                let interpolation = quoted(attribute.interpolation);
+                self.line(&format!("interpolation = {interpolation}"))?;
+                self.close(")")?;
+            }
         }
         if let Some(source) = &attribute.connection {
             self.line(&format!("{declared}.connect = <{source}>"))?;
         }
         Ok(())
-    }
-
-    fn attribute_metadata(&mut self, attribute: &Attribute<'_>) -> io::Result<()> {
-        if attribute.interpolation.is_empty() && attribute.documentation.is_empty() {
-            return Ok(());
-        }
-        self.out.write_all(b" (\n")?;
-        self.depth += 1;
-        self.documentation(&attribute.documentation)?;
-        if !attribute.interpolation.is_empty() {
-            self.line(&format!(
-                "interpolation = {}",
-                quoted(attribute.interpolation)
-            ))?;
-        }
-        self.depth -= 1;
-        self.begin()?;
-        self.out.write_all(b")")
     }
 
     fn value(&mut self, value: &Value<'_>) -> io::Result<()> {
@@ -233,8 +218,8 @@ impl Text<'_> {
             Value::Vec2(value) => tuple(value),
             Value::Vec3(value) => tuple(value),
             Value::String(text) | Value::Token(text) => quoted(text),
-            Value::Asset(path) => format!("@{path}@"),
-            Value::Tokens(texts) | Value::Strings(texts) => list(texts),
+            Value::Asset(path) => asset(path),
+            Value::Strings(texts) => list(texts),
             // Dictionaries have a form of their own, see `dictionary`.
             Value::Dictionary(_) => String::new(),
         };
@@ -245,41 +230,25 @@ impl Text<'_> {
         let (out, wrote) = (&mut *self.out, &mut *self.wrote);
         out.write_all(b"[")?;
         match array {
-            Array::Int(rows) => pieces::write(
-                rows,
-                out,
-                |values, first, bytes| {
-                    separated(values, first, bytes, |value, text| {
-                        let _ = write!(text, "{value}");
-                    });
-                },
-                wrote,
-            ),
-            Array::Float(rows) => pieces::write(
-                rows,
-                out,
-                |values, first, bytes| separated(values, first, bytes, |v, text| push(*v, text)),
-                wrote,
-            ),
-            Array::Vec2(rows) => pieces::write(
-                rows,
-                out,
-                |values, first, bytes| {
-                    separated(values, first, bytes, |v, text| push_tuple(v, text))
-                },
-                wrote,
-            ),
-            Array::Vec3(rows) => pieces::write(
-                rows,
-                out,
-                |values, first, bytes| {
-                    separated(values, first, bytes, |v, text| push_tuple(v, text))
-                },
-                wrote,
-            ),
+            Array::Int(rows) => elements(rows, out, wrote, |v, text| {
+                let _ = write!(text, "{v}");
+            }),
+            Array::Float(rows) => elements(rows, out, wrote, |v, text| push(*v, text)),
+            Array::Vec2(rows) => elements(rows, out, wrote, |v, text| push_tuple(v, text)),
+            Array::Vec3(rows) => elements(rows, out, wrote, |v, text| push_tuple(v, text)),
         }?;
         self.out.write_all(b"]")
     }
+}
+
+fn elements<T: Send>(
+    rows: &Rows<'_, T>,
+    out: &mut dyn Write,
+    wrote: &mut dyn FnMut(u64) -> io::Result<()>,
+    push: impl Fn(&T, &mut String) + Sync,
+) -> io::Result<()> {
+    let encode = |values: &[T], first, bytes: &mut _| separated(values, first, bytes, &push);
+    pieces::write(rows, out, encode, wrote)
 }
 
 fn has_metadata(prim: &Prim<'_>) -> bool {
@@ -291,27 +260,4 @@ fn has_metadata(prim: &Prim<'_>) -> bool {
         && prim.payload.is_none()
         && prim.variant_sets.is_empty()
         && prim.selections.is_empty())
-}
-
-fn type_of(value: &Value<'_>) -> &'static str {
-    match value {
-        Value::Bool(_) => "bool",
-        Value::Int(_) => "int",
-        Value::Float(_) => "float",
-        Value::Double(_) => "double",
-        Value::Vec2(_) => "float2",
-        Value::Vec3(_) => "float3",
-        Value::String(_) => "string",
-        Value::Token(_) => "token",
-        Value::Asset(_) => "asset",
-        Value::Tokens(_) => "token[]",
-        Value::Strings(_) => "string[]",
-        Value::Dictionary(_) => "dictionary",
-        Value::Array(array) => match **array {
-            Array::Int(_) => "int[]",
-            Array::Float(_) => "float[]",
-            Array::Vec2(_) => "float2[]",
-            Array::Vec3(_) => "float3[]",
-        },
-    }
 }

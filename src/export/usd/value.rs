@@ -112,8 +112,6 @@ pub enum Value<'a> {
     Token(String),
     /// `asset`: a path, relative ones begin with `./`.
     Asset(String),
-    /// `token[]`.
-    Tokens(Vec<String>),
     /// `string[]`.
     Strings(Vec<String>),
     /// Numbers in an array. Where two attributes hold the same [`Arc`], a crate file stores it once.
@@ -126,6 +124,29 @@ pub enum Value<'a> {
 pub type Dictionary<'a> = Vec<(String, Value<'a>)>;
 
 impl Value<'_> {
+    /// As files name the type of such a value; attributes have one of their own, which says more.
+    pub fn type_name(&self) -> &'static str {
+        match self {
+            Self::Bool(_) => "bool",
+            Self::Int(_) => "int",
+            Self::Float(_) => "float",
+            Self::Double(_) => "double",
+            Self::Vec2(_) => "float2",
+            Self::Vec3(_) => "float3",
+            Self::String(_) => "string",
+            Self::Token(_) => "token",
+            Self::Asset(_) => "asset",
+            Self::Strings(_) => "string[]",
+            Self::Dictionary(_) => "dictionary",
+            Self::Array(array) => match **array {
+                Array::Int(_) => "int[]",
+                Array::Float(_) => "float[]",
+                Array::Vec2(_) => "float2[]",
+                Array::Vec3(_) => "float3[]",
+            },
+        }
+    }
+
     /// A string.
     pub fn string(text: impl Into<String>) -> Self {
         Self::String(text.into())

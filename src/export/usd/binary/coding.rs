@@ -111,7 +111,9 @@ mod tests {
                 i32::MAX,
                 -1,
             ],
-            (0..1000).map(|i| (i * 2_654_435) ^ (i << 17)).collect(),
+            (0..1000i32)
+                .map(|i| i.wrapping_mul(2_654_435) ^ (i << 17))
+                .collect(),
         ];
         for case in cases {
             assert_eq!(unpack(&compress_ints(&case), case.len()), case);

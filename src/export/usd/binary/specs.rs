@@ -129,13 +129,11 @@ impl Packer<'_> {
     fn property(&mut self, path: u32, property: &Property<'_>) -> io::Result<()> {
         match property {
             Property::Attribute(attribute) => self.attribute(path, attribute),
-            Property::Relationship { targets, .. } => {
-                let targets: Vec<u32> = (targets.iter())
-                    .map(|t| self.paths.absolute(t, &mut self.tables))
-                    .collect();
+            Property::Relationship { target, .. } => {
+                let target = self.paths.absolute(target, &mut self.tables);
                 let word = self
                     .values
-                    .list_edit(Type::PathListOp, Edit::Explicit, &targets)?;
+                    .list_edit(Type::PathListOp, Edit::Explicit, &[target])?;
                 let uniform = inlined(Type::Variability, UNIFORM);
                 let fields = vec![
                     self.tables.field("variability", uniform),
@@ -161,7 +159,6 @@ impl Packer<'_> {
             let value = Value::token(attribute.interpolation);
             self.value_field(&mut fields, "interpolation", &value)?;
         }
-        self.text_field(&mut fields, "documentation", &attribute.documentation)?;
         if let Some(value) = &attribute.value {
             self.value_field(&mut fields, "default", value)?;
         }
@@ -233,6 +230,5 @@ fn specifier_number(specifier: Specifier) -> u32 {
     match specifier {
         Specifier::Def => 0,
         Specifier::Over => 1,
-        Specifier::Class => 2,
     }
 }

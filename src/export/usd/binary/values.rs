@@ -3,7 +3,7 @@
 use super::coding::compress_ints;
 use super::tables::Tables;
 use crate::export::usd::pieces;
-use crate::export::usd::value::{Array, Dictionary, Value};
+use crate::export::usd::value::{Array, Dictionary, Rows, Value};
 use std::collections::HashMap;
 use std::io::{self, Write};
 use std::sync::Arc;
@@ -112,13 +112,9 @@ impl<'o> Values<'o> {
             Value::String(text) => inlined(Type::String, tables.string(text)),
             Value::Token(text) => inlined(Type::Token, tables.token(text)),
             Value::Asset(path) => inlined(Type::Asset, tables.token(path)),
-            Value::Tokens(texts) => {
-                let tokens: Vec<u32> = texts.iter().map(|t| tables.token(t)).collect();
-                self.indices(Type::Token, &tokens)?
-            }
             Value::Strings(texts) => {
                 let strings: Vec<u32> = texts.iter().map(|t| tables.string(t)).collect();
-                self.indices(Type::String, &strings)?
+                self.strings(&strings)?
             }
             Value::Array(array) => self.array(array)?,
             Value::Dictionary(dictionary) => self.dictionary(dictionary, tables)?,
@@ -133,12 +129,12 @@ impl<'o> Values<'o> {
         self.outside(Type::Double, &value.to_le_bytes())
     }
 
-    /// Numbers of tokens or strings, with their count before them.
-    fn indices(&mut self, kind: Type, indices: &[u32]) -> io::Result<u64> {
-        if indices.is_empty() {
-            return Ok((kind as u64) << 48 | IS_ARRAY);
+    /// An array of strings.
+    fn strings(&mut self, strings: &[u32]) -> io::Result<u64> {
+        if strings.is_empty() {
+            return Ok((Type::String as u64) << 48 | IS_ARRAY);
         }
-        Ok(self.outside(kind, &counted(indices))? | IS_ARRAY)
+        Ok(self.outside(Type::String, &counted(strings))? | IS_ARRAY)
     }
 
     /// `primChildren` and the like: a list of tokens that is not an array.
@@ -241,34 +237,29 @@ impl<'o> Values<'o> {
         self.put(&(count as u64).to_le_bytes())?;
         let (out, wrote) = (&mut *self.out, &mut *self.wrote);
         match array {
-            Array::Int(rows) => pieces::write(
-                rows,
-                out,
-                |values, _, bytes| bytes.extend(values.iter().flat_map(|v| v.to_le_bytes())),
-                wrote,
-            ),
-            Array::Float(rows) => pieces::write(
-                rows,
-                out,
-                |values, _, bytes| put_floats(values, bytes),
-                wrote,
-            ),
-            Array::Vec2(rows) => pieces::write(
-                rows,
-                out,
-                |values, _, bytes| put_floats(values.as_flattened(), bytes),
-                wrote,
-            ),
-            Array::Vec3(rows) => pieces::write(
-                rows,
-                out,
-                |values, _, bytes| put_floats(values.as_flattened(), bytes),
-                wrote,
-            ),
+            Array::Int(rows) => elements(rows, out, wrote, |values, bytes| {
+                bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+            }),
+            Array::Float(rows) => elements(rows, out, wrote, put_floats),
+            Array::Vec2(rows) => elements(rows, out, wrote, |values, bytes| {
+                put_floats(values.as_flattened(), bytes);
+            }),
+            Array::Vec3(rows) => elements(rows, out, wrote, |values, bytes| {
+                put_floats(values.as_flattened(), bytes);
+            }),
         }?;
         self.position += array.bytes();
         Ok(word | place)
     }
+}
+
+fn elements<T: Send>(
+    rows: &Rows<'_, T>,
+    out: &mut dyn Write,
+    wrote: &mut dyn FnMut(u64) -> io::Result<()>,
+    put: impl Fn(&[T], &mut Vec<u8>) + Sync,
+) -> io::Result<()> {
+    pieces::write(rows, out, |values, _, bytes| put(values, bytes), wrote)
 }
 
 fn put_floats(values: &[f32], bytes: &mut Vec<u8>) {
