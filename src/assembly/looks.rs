@@ -1,7 +1,8 @@
 //! Hair shaders in closed form for other renderers, fitted to the tables of a species.
 
-use super::{AssemblyError, settings_of, station_table};
+use super::{AssemblyError, coat_parts, station_table};
 use crate::bake::{BakeError, Cache, Settings};
+use crate::bsdf::CoatPart;
 use crate::export::asset::{ClassLook, HairLook, LobeError};
 use crate::progress::{Cancel, Progress};
 use crate::species::Species;
@@ -21,46 +22,35 @@ pub fn looks(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Vec<ClassLook>, AssemblyError> {
+    let settings = Settings {
+        azimuths: 1,
+        ..settings.clone()
+    };
     let mut looks = Vec::with_capacity(species.classes.len());
     for (index, class) in species.classes.iter().enumerate() {
         let Some(station) = class.widest() else {
             continue;
         };
-        let settings = Settings {
-            azimuths: 1,
-            ..settings_of(station, settings)
-        };
         let baked = station_table(species, class, station, &settings, cache, progress, cancel)?;
         if !baked.complete {
             return Err(BakeError::Stopped.into());
         }
-        let pigments = species.pigments(index);
-        let bands: usize = pigments.iter().map(|bands| bands.len()).sum();
-        progress.begin("fitting", bands as u64, "materials");
-        // Parts of a coat share bands; each is fitted once.
-        let mut known: Vec<([f64; 3], HairLook)> = Vec::new();
-        let mut parts = Vec::with_capacity(pigments.len());
-        for bands in pigments {
-            let mut zones = Vec::with_capacity(bands.len());
-            for band in bands {
-                if cancel.is_cancelled() {
-                    return Err(BakeError::Stopped.into());
-                }
-                let absorption = band.absorption_per_um();
-                let look = match known.iter().find(|(a, _)| *a == absorption) {
-                    Some((_, look)) => look.clone(),
-                    None => look(&Model::Chiang.fit(&baked.table.dye(absorption)?, &[0, 1, 2])?),
-                };
-                known.push((absorption, look.clone()));
-                zones.push(look);
-                progress.advance(1);
+        let (parts, dyes) = coat_parts(&species.pigments(index));
+        progress.begin("fitting", dyes.len() as u64, "materials");
+        let mut fitted = Vec::with_capacity(dyes.len());
+        for band in &dyes {
+            if cancel.is_cancelled() {
+                return Err(BakeError::Stopped.into());
             }
-            parts.push(zones);
+            let maps = baked.table.dye(band.absorption_per_um())?;
+            fitted.push(look(&Model::Chiang.fit(&maps, &[0, 1, 2])?));
+            progress.advance(1);
         }
         progress.finish();
+        let zones = |part: &CoatPart| part.dyes.iter().map(|&dye| fitted[dye].clone()).collect();
         looks.push(ClassLook {
             station: station.at,
-            parts,
+            parts: parts.iter().map(zones).collect(),
         });
     }
     Ok(looks)

@@ -142,7 +142,10 @@ fn bracket_station(stations: &[f32], at: f32) -> (usize, usize, f32) {
     }
 }
 
-fn bracket_zone(zones: &[Zone], tip_mm: f32) -> (usize, usize, f32) {
+/// The zones that meet at a distance from the tip, and the share of the second.
+///
+/// * `zones`: never empty.
+pub(crate) fn bracket_zone(zones: &[Zone], tip_mm: f32) -> (usize, usize, f32) {
     for (i, zone) in zones.iter().enumerate().take(zones.len() - 1) {
         let half = 0.5 * zone.softness_mm;
         if tip_mm < zone.to_mm - half {

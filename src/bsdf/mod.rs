@@ -9,6 +9,7 @@ mod chiang;
 mod material;
 
 pub use chiang::{Chiang, ChiangLobe, ChiangParameters};
+pub(crate) use material::bracket_zone;
 pub use material::{AlongStrand, CoatPart, HairMaterial, Place, TableSet, Zone};
 
 use crate::color::Rgb;

@@ -10,6 +10,7 @@ use crate::blame::Blame;
 use crate::export::asset::{
     self, AssetSettings, ClassLook, Curves, Frame, Layout, Parts, Profile, READERS, Units, Up,
 };
+use crate::export::usd::Form;
 use crate::export::{ExportError, Format};
 use crate::groom::{self, Forecast, GroomSettings};
 use crate::io::check_writable;
@@ -209,24 +210,16 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         looks: &looks,
         seed: args.seed,
     };
+    let frame = settings.frame;
     for output in &args.output {
-        if let Format::Lines(format) = Format::of(output)? {
-            lines::run(output, format, &parts, settings.frame, console)?;
-            continue;
+        match Format::of(output)? {
+            Format::Lines(format) => lines::run(output, format, &parts, frame, console)?,
+            Format::Vdb => volume::run(output, &parts, &args.volume, &grids, frame, console)?,
+            Format::Usd(_) => {
+                asset::write(output, &parts, &settings, console, cancel)?;
+                console.say(format!("{}: {}", output.display(), described(&parts)));
+            }
         }
-        if Format::of(output)? == Format::Vdb {
-            volume::run(
-                output,
-                &parts,
-                &args.volume,
-                &grids,
-                settings.frame,
-                console,
-            )?;
-            continue;
-        }
-        asset::write(output, &parts, &settings, console, cancel)?;
-        console.say(format!("{}: {}", output.display(), described(&parts)));
     }
     Ok(())
 }
@@ -236,11 +229,7 @@ fn looks(args: &Args, species: &Species, console: &Console) -> Result<Vec<ClassL
     if args.no_material {
         return Ok(Vec::new());
     }
-    let cache = if args.no_cache {
-        None
-    } else {
-        Cache::of_user()
-    };
+    let cache = Cache::of_user().filter(|_| !args.no_cache);
     let bake = Settings {
         photons: args.bake_photons,
         seed: args.seed,
@@ -264,8 +253,7 @@ fn looks(args: &Args, species: &Species, console: &Console) -> Result<Vec<ClassL
 /// Whether any output is an asset, not only grids and plain strands.
 fn writes_usd(args: &Args) -> Result<bool, ExportError> {
     let formats: Result<Vec<_>, _> = args.output.iter().map(|o| Format::of(o)).collect();
-    let is_usd = |f: &Format| matches!(f, Format::UsdText | Format::UsdBinary);
-    Ok(formats?.iter().any(is_usd))
+    Ok(formats?.iter().any(|f| matches!(f, Format::Usd(_))))
 }
 
 /// What was asked for in the words of the library.
@@ -340,8 +328,9 @@ fn announce(
         megabytes(memory as u64)
     ));
     for output in &args.output {
-        let text = 4 * binary;
-        let is_text = Format::of(output)? == Format::UsdText && settings.layout == Layout::Single;
+        let text = asset::TEXT_FACTOR * binary;
+        let is_text =
+            Format::of(output)? == Format::Usd(Form::Text) && settings.layout == Layout::Single;
         if !is_text || text <= MUCH_TEXT {
             continue;
         }

@@ -18,10 +18,8 @@ use std::path::Path;
 /// What a groom can be written as, by the suffix of the file's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// `.usda`: Universal Scene Description as text.
-    UsdText,
-    /// `.usdc` and `.usd`: the same in binary form.
-    UsdBinary,
+    /// Universal Scene Description: `.usda` as text, `.usdc` and `.usd` in binary form.
+    Usd(usd::Form),
     /// `.vdb`: grids of density, color and others.
     Vdb,
     /// Plain strands: `.hair`, `.npz`, `.ply`, `.glb`, `.pbrt`.
@@ -36,8 +34,8 @@ impl Format {
     pub fn of(path: &Path) -> Result<Self, ExportError> {
         let suffix = path.extension().and_then(|e| e.to_str()).unwrap_or("");
         match suffix.to_ascii_lowercase().as_str() {
-            "usda" => Ok(Self::UsdText),
-            "usdc" | "usd" => Ok(Self::UsdBinary),
+            "usda" => Ok(Self::Usd(usd::Form::Text)),
+            "usdc" | "usd" => Ok(Self::Usd(usd::Form::Binary)),
             "vdb" => Ok(Self::Vdb),
             other => match lines::LineFormat::of_suffix(other) {
                 Some(format) => Ok(Self::Lines(format)),

@@ -118,8 +118,7 @@ pub(super) fn settings(
 
 fn form_of(path: &Path) -> Result<Form, Failure> {
     match Format::of(path)? {
-        Format::UsdText => Ok(Form::Text),
-        Format::UsdBinary => Ok(Form::Binary),
+        Format::Usd(form) => Ok(form),
         _ => {
             let message = format!("--wrap {}: no USD layer", path.display());
             let help = "end the name in .usda, .usdc or .usd";

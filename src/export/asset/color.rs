@@ -1,6 +1,7 @@
 //! Color along a strand, without a bake: what a coat of such hair looks like from afar.
 
 use super::look::{ClassLook, HairLook};
+use crate::bsdf::{Zone, bracket_zone};
 use crate::groom::Groom;
 use crate::math::fresnel;
 use crate::species::{HairClass, PigmentBand, Species};
@@ -18,8 +19,7 @@ const OFFSETS: usize = 16;
 /// Pigment of one class in one part of a coat, from the tip to the root.
 #[derive(Clone, Debug)]
 pub(super) struct Zones {
-    /// End from the tip and width of the transition, millimeters.
-    edges: Vec<[f32; 2]>,
+    edges: Vec<Zone>,
     /// What each zone has.
     pub(super) values: Vec<Dye>,
 }
@@ -45,7 +45,10 @@ impl Zones {
         let radius_um = 0.5 * class.groom.diameter_um;
         Self {
             edges: (pigment.iter())
-                .map(|band| [band.to_mm as f32, band.softness_mm as f32])
+                .map(|band| Zone {
+                    to_mm: band.to_mm as f32,
+                    softness_mm: band.softness_mm as f32,
+                })
                 .collect(),
             values: (pigment.iter().enumerate())
                 .map(|(zone, band)| {
@@ -68,8 +71,8 @@ impl Zones {
     pub(super) fn longest(&self, length_mm: f32) -> usize {
         let mut from = 0.0;
         let mut best = (0, 0.0);
-        for (zone, [to, _]) in self.edges.iter().enumerate() {
-            let to = to.min(length_mm);
+        for (zone, edge) in self.edges.iter().enumerate() {
+            let to = edge.to_mm.min(length_mm);
             if to - from > best.1 {
                 best = (zone, to - from);
             }
@@ -80,19 +83,8 @@ impl Zones {
 
     /// The value at a distance from the tip.
     fn at(&self, tip_mm: f32, of: impl Fn(&Dye) -> Vec3) -> Vec3 {
-        let last = self.values.len() - 1;
-        for (zone, [to, softness]) in self.edges.iter().enumerate().take(last) {
-            let half = 0.5 * softness;
-            if tip_mm < to - half {
-                return of(&self.values[zone]);
-            }
-            if tip_mm < to + half {
-                let t = (tip_mm - to + half) / softness;
-                let share = t * t * (3.0 - 2.0 * t);
-                return of(&self.values[zone]).lerp(of(&self.values[zone + 1]), share);
-            }
-        }
-        of(&self.values[last])
+        let (this, next, share) = bracket_zone(&self.edges, tip_mm);
+        of(&self.values[this]).lerp(of(&self.values[next]), share)
     }
 
     /// Appends the values at the control points of a strand.

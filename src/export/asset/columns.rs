@@ -1,10 +1,11 @@
 //! What strands are given besides points and widths.
 
-use super::color::Coats;
+use super::color::Dye;
 use super::profile::Column;
 use super::strands::Strands;
 use super::tree::{Builder, Purpose};
 use crate::export::usd::{Array, Prim, Rows, Value};
+use glam::Vec3;
 use std::sync::Arc;
 
 impl<'a> Builder<'_, 'a> {
@@ -65,12 +66,13 @@ impl<'a> Builder<'_, 'a> {
     /// Attributes that change along a strand.
     pub(super) fn point_columns(&self, prim: &mut Prim<'a>, strands: &Strands<'a>, class: usize) {
         let (groom, profile) = (self.parts.groom, &self.settings.profile);
-        let coats = Coats::new(self.parts.species, class, self.look(class));
-        let zones = Arc::new(coats);
-        let of = Arc::clone(&zones);
-        let color: Value<'a> = strands
-            .vertex3(move |i, out| of.along(groom, i, |dye| dye.color, out))
-            .into();
+        let coats = &self.coats[class];
+        let along = |of: fn(&Dye) -> Vec3| {
+            let coats = Arc::clone(coats);
+            move |strand, out: &mut Vec<Vec3>| coats.along(groom, strand, of, out)
+        };
+        let color = strands.vertex_of(along(|dye| dye.color), Vec3::to_array);
+        let color: Value<'a> = Array::Vec3(color).into();
         for (column, kind, name) in [
             (Column::DisplayColor, "color3f[]", "displayColor"),
             (Column::GroomColor, "float3[]", "groom_color"),
@@ -80,32 +82,24 @@ impl<'a> Builder<'_, 'a> {
             }
         }
         if profile.wants(Column::Melanin) {
-            self.melanin(prim, strands, &zones);
-        }
-        if profile.wants(Column::Absorption) && !zones.is_even() {
-            let of = Arc::clone(&zones);
-            let absorption =
-                strands.vertex3(move |i, out| of.along(groom, i, |dye| dye.absorption, out));
-            prim.primvar("vector3f[]", "absorption", "vertex", absorption.into());
-        }
-    }
-
-    fn melanin(&self, prim: &mut Prim<'a>, strands: &Strands<'a>, zones: &Arc<Coats>) {
-        let groom = self.parts.groom;
-        for (part, name) in ["eumelanin", "pheomelanin"].into_iter().enumerate() {
-            if zones.is_even() {
-                let value = zones.0[0].values[0].melanin[part];
-                let value = Array::Float(Rows::of(vec![value]));
-                prim.primvar("float[]", name, "constant", value.into());
-                continue;
+            for (part, name) in ["eumelanin", "pheomelanin"].into_iter().enumerate() {
+                let (interpolation, values) = match coats.is_even() {
+                    true => (
+                        "constant",
+                        Rows::of(vec![coats.0[0].values[0].melanin[part]]),
+                    ),
+                    false => (
+                        "vertex",
+                        strands.vertex_of(along(|dye| dye.melanin), move |m| m[part]),
+                    ),
+                };
+                prim.primvar("float[]", name, interpolation, Array::Float(values).into());
             }
-            let of = Arc::clone(zones);
-            let values = strands.vertex(move |i, out: &mut Vec<f32>| {
-                let mut both = Vec::new();
-                of.along(groom, i, |dye| dye.melanin, &mut both);
-                out.extend(both.iter().map(|m| m[part]));
-            });
-            prim.primvar("float[]", name, "vertex", Array::Float(values).into());
+        }
+        if profile.wants(Column::Absorption) && !coats.is_even() {
+            let absorption = strands.vertex_of(along(|dye| dye.absorption), Vec3::to_array);
+            let absorption = Array::Vec3(absorption);
+            prim.primvar("vector3f[]", "absorption", "vertex", absorption.into());
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A groom as a component asset: skin, curves of every hair class, materials, levels of detail.
 //!
 //! ```text
-//! /red_fox            Xform, kind component, GroomAPI; variant set `lod`
+//! /red_fox            Xform, kind component; for Unreal also GroomAPI; variant set `lod`
 //!   /geo/skin         Mesh
 //!   /geo/render/...   BasisCurves a hair class
 //!   /geo/proxy/...    the same, few and wide, for viewports
@@ -32,7 +32,7 @@ pub use look::{ClassLook, HairLook, LobeError};
 pub use profile::{Column, Profile, READERS, Reader};
 pub use provenance::identifier;
 pub use tree::{interface, layer};
-pub use write::{estimate, write};
+pub use write::{TEXT_FACTOR, estimate, write};
 
 use super::ExportError;
 use crate::groom::Groom;

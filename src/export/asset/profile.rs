@@ -64,17 +64,41 @@ pub enum Column {
 }
 
 impl Column {
+    /// All there are.
+    pub const ALL: [Self; 12] = [
+        Self::RootUv,
+        Self::GroomRootUv,
+        Self::SurfaceUv,
+        Self::SkinPrim,
+        Self::CurveId,
+        Self::GroomId,
+        Self::GroomGroup,
+        Self::GroomGuide,
+        Self::DisplayColor,
+        Self::GroomColor,
+        Self::Melanin,
+        Self::Absorption,
+    ];
+
+    /// The column that has the same numbers and is stored once for all of them; mostly the column itself.
+    pub fn original(self) -> Self {
+        match self {
+            Self::GroomRootUv | Self::SurfaceUv => Self::RootUv,
+            Self::GroomId => Self::CurveId,
+            Self::GroomColor => Self::DisplayColor,
+            itself => itself,
+        }
+    }
+
     /// Bytes a strand and a control point.
     pub fn bytes(self) -> (usize, usize) {
-        match self {
-            // What has the same numbers is stored once.
-            Self::GroomRootUv | Self::SurfaceUv | Self::GroomId | Self::GroomColor => (0, 0),
+        match self.original() {
             Self::RootUv => (8, 0),
             Self::SkinPrim => (16, 0),
             Self::CurveId => (2, 0),
-            Self::GroomGroup | Self::GroomGuide => (0, 0),
             Self::DisplayColor | Self::Absorption => (0, 12),
             Self::Melanin => (0, 8),
+            _ => (0, 0),
         }
     }
 

@@ -19,6 +19,8 @@ pub(super) struct Strands<'a> {
     widening: f32,
     curves: Curves,
     frame: Frame,
+    /// Number of control points as written.
+    elements: usize,
 }
 
 impl<'a> Strands<'a> {
@@ -30,7 +32,9 @@ impl<'a> Strands<'a> {
         curves: Curves,
         frame: Frame,
     ) -> Self {
+        let count = |&i: &u32| curves.count(groom.strand(i as usize).len());
         Self {
+            elements: index.iter().map(count).sum(),
             groom,
             index,
             widening,
@@ -49,12 +53,6 @@ impl<'a> Strands<'a> {
         self.index[row] as usize
     }
 
-    /// Number of control points as written.
-    fn elements(&self) -> usize {
-        let count = |&i: &u32| self.curves.count(self.groom.strand(i as usize).len());
-        self.index.iter().map(count).sum()
-    }
-
     /// `curveVertexCounts`.
     pub(super) fn counts(&self) -> Array<'a> {
         let this = self.clone();
@@ -66,18 +64,14 @@ impl<'a> Strands<'a> {
     /// `points`.
     pub(super) fn points(&self) -> Array<'a> {
         let this = self.clone();
-        Array::Vec3(Rows::new(
-            self.count(),
-            self.elements(),
-            move |rows, out| {
-                let mut points = Vec::new();
-                for row in rows {
-                    points.clear();
-                    this.place(row, &mut points);
-                    out.extend(points.iter().map(Vec3::to_array));
-                }
-            },
-        ))
+        Array::Vec3(Rows::new(self.count(), self.elements, move |rows, out| {
+            let mut points = Vec::new();
+            for row in rows {
+                points.clear();
+                this.place(row, &mut points);
+                out.extend(points.iter().map(Vec3::to_array));
+            }
+        }))
     }
 
     /// Appends the control points of a strand as written.
@@ -114,7 +108,7 @@ impl<'a> Strands<'a> {
         T: Copy + Add<Output = T> + Mul<f32, Output = T>,
     {
         let this = self.clone();
-        Rows::new(self.count(), self.elements(), move |rows, out| {
+        Rows::new(self.count(), self.elements, move |rows, out| {
             let mut values = Vec::new();
             for row in rows {
                 values.clear();
@@ -124,21 +118,18 @@ impl<'a> Strands<'a> {
         })
     }
 
-    /// [`Strands::vertex`] of three numbers.
-    pub(super) fn vertex3(
+    /// [`Strands::vertex`] of what `part` takes of three numbers.
+    pub(super) fn vertex_of<T>(
         &self,
         of: impl Fn(usize, &mut Vec<Vec3>) + Send + Sync + 'a,
-    ) -> Array<'a> {
+        part: impl Fn(&Vec3) -> T + Send + Sync + 'a,
+    ) -> Rows<'a, T> {
         let rows = self.vertex(of);
-        Array::Vec3(Rows::new(
-            rows.rows(),
-            rows.elements(),
-            move |range, out| {
-                let mut values = Vec::new();
-                rows.fill(range, &mut values);
-                out.extend(values.iter().map(Vec3::to_array));
-            },
-        ))
+        Rows::new(rows.rows(), rows.elements(), move |range, out| {
+            let mut values = Vec::new();
+            rows.fill(range, &mut values);
+            out.extend(values.iter().map(&part));
+        })
     }
 
     /// Corners of the box around all control points and half the widest width.

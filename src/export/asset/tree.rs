@@ -11,13 +11,14 @@ use crate::PROGRAM;
 use crate::export::usd::{Array, Attribute, Layer, Prim, Rows, Value, VariantSet};
 use crate::species::HairClass;
 use glam::Vec3;
+use std::sync::Arc;
 
 /// A groom as one file.
 ///
 /// * `file`: its name, without a folder.
 pub fn layer<'a>(parts: &Parts<'a>, settings: &'a AssetSettings, file: &str) -> Layer<'a> {
     Layer {
-        prims: vec![Builder { parts, settings }.root(file)],
+        prims: vec![Builder::new(parts, settings).root(file)],
         ..layer_around(parts, settings)
     }
 }
@@ -31,7 +32,7 @@ pub fn interface<'a>(
     file: &str,
     payload: &str,
 ) -> Layer<'a> {
-    let builder = Builder { parts, settings };
+    let builder = Builder::new(parts, settings);
     let mut root = builder.bare_root(file);
     root.payload = Some(format!("./{payload}"));
     root.api_schemas.push("GeomModelAPI".to_owned());
@@ -62,6 +63,8 @@ fn layer_around<'a>(parts: &Parts<'_>, settings: &AssetSettings) -> Layer<'a> {
 pub(super) struct Builder<'p, 'a> {
     pub(super) parts: &'p Parts<'a>,
     pub(super) settings: &'a AssetSettings,
+    /// Pigment of each class.
+    pub(super) coats: Vec<Arc<Coats>>,
 }
 
 /// What a prim of curves is for.
@@ -72,7 +75,16 @@ pub(super) enum Purpose {
     Guide,
 }
 
-impl<'a> Builder<'_, 'a> {
+impl<'p, 'a> Builder<'p, 'a> {
+    fn new(parts: &'p Parts<'a>, settings: &'a AssetSettings) -> Self {
+        let coats = |class| Arc::new(Coats::new(parts.species, class, parts.looks.get(class)));
+        Self {
+            parts,
+            settings,
+            coats: (0..parts.species.classes.len()).map(coats).collect(),
+        }
+    }
+
     /// The root without what is below it.
     fn bare_root(&self, file: &str) -> Prim<'a> {
         let species = self.parts.species;
@@ -170,9 +182,8 @@ impl<'a> Builder<'_, 'a> {
         let mut materials = Vec::new();
         for (class, look) in self.parts.looks.iter().enumerate() {
             let hair = self.class(class);
-            let coats = Coats::new(self.parts.species, class, Some(look));
-            let names = &self.parts.groom.coats;
-            materials.extend(material::materials(&scope, hair, names, look, &coats));
+            let (names, coats) = (&self.parts.groom.coats, &self.coats[class]);
+            materials.extend(material::materials(&scope, hair, names, look, coats));
         }
         if !materials.is_empty() {
             materials.push(material::skin(&scope, self.skin_color()));
@@ -180,7 +191,7 @@ impl<'a> Builder<'_, 'a> {
         materials
     }
 
-    pub(super) fn look(&self, class: usize) -> Option<&'a ClassLook> {
+    fn look(&self, class: usize) -> Option<&'a ClassLook> {
         self.parts.looks.get(class)
     }
 
@@ -270,8 +281,7 @@ impl<'a> Builder<'_, 'a> {
             && self.settings.profile.has(Reader::Blender)
         {
             let hair = self.class(class);
-            let coats = Coats::new(self.parts.species, class, Some(look));
-            let longest = coats.0[0].longest(hair.groom.length_mm as f32);
+            let longest = self.coats[class].0[0].longest(hair.groom.length_mm as f32);
             user_properties(&mut curves, &material::blender(&look.parts[0][longest]));
         }
         self.bind(&mut curves, &identifier(&name));
