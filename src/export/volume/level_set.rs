@@ -120,7 +120,10 @@ pub fn signed_distance(
                     leaf.values[offset] = -background;
                 }
             }
-            Ok((leaf.active_count() > 0).then_some(leaf))
+            // Without an active voxel it is all outside or all inside: what is inside a closed mesh gets
+            // tiles, what is deep in a plate has this leaf alone.
+            let deep = winding.is_none() && leaf.values[0] < 0.0;
+            Ok((leaf.active_count() > 0 || deep).then_some(leaf))
         })
         .collect();
     let leaves: Vec<Leaf<f32>> = leaves?.into_iter().flatten().collect();

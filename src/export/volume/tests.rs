@@ -321,3 +321,28 @@ fn open_skins_have_no_inside_but_may_be_plates() {
     let least = least.fold(f32::INFINITY, |a, b| a.min(*b));
     assert!((-0.0011..-0.0004).contains(&least), "{least}");
 }
+
+#[test]
+fn a_thick_plate_is_filled() {
+    let positions = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let positions = positions.map(|[x, z]| 0.03 * Vec3::new(x, 0.0, z));
+    let mesh = Mesh {
+        name: "plate",
+        positions: &positions,
+        triangles: &[[0, 3, 2], [0, 2, 1]],
+    };
+    let voxel = 0.001;
+    let plate = signed_distance(&mesh, voxel, 0.02, &Silent, &Cancel::default()).unwrap();
+    let value = |at: IVec3| {
+        let leaf = plate.leaves().iter().find(|leaf| leaf.origin == at & !7);
+        leaf.map_or(plate.background(), |l| l.values[Leaf::<f32>::offset(at)])
+    };
+    // Through the plate, whose faces are ten voxels from the mesh.
+    for x in [-12, 1, 20] {
+        for y in -24..=24i32 {
+            let exact = (f64::from(y.abs()) - 10.0).clamp(-3.0, 3.0) * voxel;
+            let found = f64::from(value(IVec3::new(x, y, 5)));
+            assert!((found - exact).abs() < 1e-8, "{x} {y}: {found} {exact}");
+        }
+    }
+}
