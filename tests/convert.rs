@@ -107,7 +107,7 @@ fn files_that_lie_are_refused_in_words_and_leave_nothing() {
             "a point without end",
             hair(1, 2, 2, 1, &far),
             "x.vdb",
-            "m apart",
+            "units apart",
         ),
         (
             "a format that is none",

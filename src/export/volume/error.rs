@@ -23,32 +23,36 @@ pub enum VolumeError {
         limit_mb: f64,
     },
     /// A voxel size out of range.
-    #[error("a voxel of {voxel_mm} mm: must be 0.02 to 1000")]
+    #[error("a voxel of {voxel_mm} mm: must be {least_mm} to {most_mm}")]
     Voxel {
         /// Edge of a voxel, millimeters.
         voxel_mm: f64,
+        /// Least edge for the file's unit of length, millimeters.
+        least_mm: f64,
+        /// Largest edge, millimeters.
+        most_mm: f64,
     },
     /// Strands or a mesh too far from the origin for voxels of this size.
     #[error(
-        "the place {at} (meters) is not finite or too far from the origin for voxels of {voxel} m"
+        "the place {at} (units) is not finite or too far from the origin for voxels of {voxel} units"
     )]
     TooFar {
-        /// The place.
+        /// The place, units of the file.
         at: Vec3,
-        /// Edge of a voxel, meters.
+        /// Edge of a voxel, units.
         voxel: f64,
     },
     /// Control points so far apart that their voxels cannot be counted.
     #[error(
-        "the control points of a strand at {at} (meters) are {length} m apart, more than {limit} m: \
+        "the control points of a strand at {at} (units) are {length} units apart, more than {limit}: \
          choose larger voxels, or look at that strand"
     )]
     LongSpan {
-        /// The first of two control points.
+        /// The first of two control points, units of the file.
         at: Vec3,
-        /// Meters.
+        /// Distance to the next, units.
         length: f64,
-        /// Largest distance possible for this voxel, meters.
+        /// Largest distance possible for this voxel, units.
         limit: f64,
     },
     /// A signed distance needs an inside.

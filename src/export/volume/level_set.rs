@@ -73,7 +73,7 @@ impl Mesh<'_> {
 ///
 /// # Errors
 /// An open mesh without `shell`, one that is too large for the voxels.
-pub fn signed_distance(
+pub(super) fn signed_distance(
     mesh: &Mesh<'_>,
     voxel: f64,
     shell: f64,

@@ -26,8 +26,8 @@ pub use curve::Curves;
 pub use error::VolumeError;
 pub use fiber::{FiberGrids, write_fiber};
 pub use field::Field;
-pub use level_set::{Mesh, signed_distance};
-pub use resolution::{Statistics, statistics};
+pub use level_set::Mesh;
+pub use resolution::Statistics;
 pub use stage::stage;
 pub use weld::weld;
 
@@ -36,7 +36,9 @@ use crate::progress::{Cancel, Progress};
 use error::Stopped;
 use field::{scalar_leaf, vector_leaf};
 use glam::{IVec3, Vec3};
+use level_set::signed_distance;
 use moments::{Listing, Moments};
+use resolution::{range, statistics};
 use spread::spread;
 use std::io::{Seek, Write};
 
@@ -116,12 +118,15 @@ pub fn plan(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Plan, VolumeError> {
-    let statistics = statistics(curves, cancel)?;
-    let mut voxel = settings.voxel.unwrap_or_else(|| statistics.voxel());
-    let [least, most] = resolution::RANGE;
+    let range @ [least, most] = range(settings.meters_per_unit);
+    let statistics = statistics(curves, range, cancel)?;
+    let mut voxel = settings.voxel.unwrap_or_else(|| statistics.voxel(range));
+    let mm = 1e3 * settings.meters_per_unit;
     if !(least..=most).contains(&voxel) {
         return Err(VolumeError::Voxel {
-            voxel_mm: voxel * 1e3 * settings.meters_per_unit,
+            voxel_mm: voxel * mm,
+            least_mm: least * mm,
+            most_mm: most * mm,
         });
     }
     let per_leaf: u64 = settings.fields.iter().map(|f| f.leaf_bytes()).sum();
@@ -140,7 +145,7 @@ pub fn plan(
         }
         if settings.voxel.is_some() || voxel * 1.25 > most {
             return Err(VolumeError::Memory {
-                voxel_mm: voxel * 1e3 * settings.meters_per_unit,
+                voxel_mm: voxel * mm,
                 leaves,
                 needed_mb: memory as f64 / 1e6,
                 limit_mb: settings.memory as f64 / 1e6,

@@ -10,28 +10,41 @@ use crate::progress::{Cancel, Silent};
 const CROSSINGS: f64 = 8.0;
 /// Voxels along a strand of mean length at least.
 const ALONG: f64 = 6.0;
-/// Range of voxels, meters. OpenVDB takes smaller ones as singular.
-pub(super) const RANGE: [f64; 2] = [2e-5, 1.0];
+/// Least voxel, units: OpenVDB takes smaller ones as singular, whatever the unit.
+const LEAST: f64 = 2e-5;
+/// Largest voxel, meters.
+const MOST_METERS: f64 = 1.0;
+
+/// Least and largest voxel, units, where a unit is so many meters.
+pub(super) fn range(meters_per_unit: f64) -> [f64; 2] {
+    [LEAST, MOST_METERS / meters_per_unit]
+}
 
 /// What is known of a coat before its voxels are filled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
     /// Number of strands.
     pub strands: usize,
-    /// Mean length along control points, meters.
+    /// Mean length along control points, units.
     pub mean_length: f64,
-    /// Mean diameter by length, meters.
+    /// Mean diameter by length, units.
     pub mean_width: f64,
-    /// Length of strands per volume of coat, meters per cubic meter; the mean distance of neighbors is
+    /// Length of strands per volume of coat, units per cubic unit; the mean distance of neighbors is
     /// one over its root.
     pub length_density: f64,
 }
 
 /// Measures a coat.
 ///
+/// * `range`: least and largest voxel, units.
+///
 /// # Errors
 /// No strands, strands too far from the origin.
-pub fn statistics(curves: &Curves<'_>, cancel: &Cancel) -> Result<Statistics, VolumeError> {
+pub(super) fn statistics(
+    curves: &Curves<'_>,
+    [least, most]: [f64; 2],
+    cancel: &Cancel,
+) -> Result<Statistics, VolumeError> {
     let (mut length, mut area) = (0.0, 0.0);
     for curve in 0..curves.len() {
         for i in curves.spans(curve) {
@@ -50,7 +63,7 @@ pub fn statistics(curves: &Curves<'_>, cancel: &Cancel) -> Result<Statistics, Vo
     let mean_length = length / curves.len() as f64;
     // The space that strands take: voxels in which one is, of a size that neighbors do not leave empty
     // unless the coat is so thin that single hairs are what there is.
-    let probe = (mean_length / ALONG).clamp(RANGE[0], RANGE[1]);
+    let probe = (mean_length / ALONG).clamp(least, most);
     let taken = Listing::new(curves, probe, &Silent, cancel)?;
     let voxels: usize = taken
         .map(curves, &Silent, cancel, |_, moments| {
@@ -68,15 +81,15 @@ pub fn statistics(curves: &Curves<'_>, cancel: &Cancel) -> Result<Statistics, Vo
 
 impl Statistics {
     /// Edge of the voxel that eight strands pass through on average, at most a sixth of a strand's
-    /// length and at least two diameters, rounded to two digits; meters.
-    pub fn voxel(&self) -> f64 {
+    /// length and at least two diameters, rounded to two digits and within the range; units.
+    pub(super) fn voxel(&self, [least, most]: [f64; 2]) -> f64 {
         // A line through a cube is two thirds of its edge long on average.
         let wanted = (CROSSINGS / (1.5 * self.length_density)).sqrt();
         let voxel = wanted
             .min(self.mean_length / ALONG)
             .max(2.0 * self.mean_width);
-        let voxel = voxel.clamp(RANGE[0], RANGE[1]);
+        let voxel = voxel.clamp(least, most);
         let digit = 10f64.powf(voxel.log10().floor() - 1.0);
-        ((voxel / digit).round() * digit).max(RANGE[0])
+        ((voxel / digit).round() * digit).max(least)
     }
 }

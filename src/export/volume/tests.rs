@@ -190,10 +190,11 @@ fn the_voxel_follows_the_coat_and_the_memory() {
         colors: &[],
     };
     let cancel = Cancel::default();
-    let stats = statistics(&curves, &cancel).unwrap();
+    let range = range(1.0);
+    let stats = statistics(&curves, range, &cancel).unwrap();
     // 3000 hairs of about 2.2 cm on 5 x 5 cm: 1.2e6 per square meter.
     assert!((0.6e6..2.4e6).contains(&stats.length_density), "{stats:?}");
-    let chosen = stats.voxel();
+    let chosen = stats.voxel(range);
     assert!((0.001..0.004).contains(&chosen), "{chosen}");
     let free = VolumeSettings::default();
     let plan_of = |s: &VolumeSettings| plan(&curves, s, &Silent, &cancel);
@@ -211,6 +212,39 @@ fn the_voxel_follows_the_coat_and_the_memory() {
     assert!(matches!(plan_of(&asked), Err(VolumeError::Memory { .. })));
     let absurd = settings(&[Field::Density], 1e-6);
     assert!(matches!(plan_of(&absurd), Err(VolumeError::Voxel { .. })));
+}
+
+#[test]
+fn the_range_of_voxels_is_one_in_any_unit() {
+    // Strands of 22 cm, and the same in a unit that scales them without rounding.
+    let (points, widths, offsets) = many();
+    let of = |unit: f32| {
+        let points: Vec<Vec3> = points.iter().map(|p| *p * 10.0 / unit).collect();
+        let widths: Vec<f32> = widths.iter().map(|w| *w * 10.0 / unit).collect();
+        let curves = Curves {
+            points: &points,
+            widths: &widths,
+            offsets: &offsets,
+            colors: &[],
+        };
+        let unit = f64::from(unit);
+        let settings = |mm: f64| VolumeSettings {
+            meters_per_unit: unit,
+            ..settings(&[Field::Density], mm * 1e-3 / unit)
+        };
+        let plan = |mm: f64| plan(&curves, &settings(mm), &Silent, &Cancel::default());
+        let refused = [plan(1001.0), plan(1e-9)].map(|refused| refused.unwrap_err().to_string());
+        let found = plan(20.0).unwrap();
+        let stats = found.statistics;
+        let density = stats.length_density / unit.powi(2);
+        (found.leaves, stats.mean_length * unit, density, refused)
+    };
+    let (leaves, length, density, [meters, fine]) = of(1.0);
+    assert!(meters.contains("must be 0.02 to 1000"), "{meters}");
+    assert!(fine.contains("must be 0.02 to 1000"), "{fine}");
+    let (same, as_long, as_dense, [large, _]) = of(1.0 / 128.0);
+    assert_eq!((same, as_long, as_dense), (leaves, length, density));
+    assert!(large.contains("must be 0.00015625 to 1000"), "{large}");
 }
 
 #[test]
