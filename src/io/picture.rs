@@ -1,15 +1,14 @@
 //! Pictures as maps: one number a pixel, looked up by texture coordinates.
 
-use super::{FileError, read_bounded};
+use super::{Decoded, FileError, decode_exr, read_bounded};
 use crate::blame::Blame;
-use exr::prelude::{ReadChannels, ReadLayers};
 use glam::Vec2;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 /// Largest file read, bytes, and most pixels.
 const FILE_LIMIT: u64 = 1 << 30;
-const PIXEL_LIMIT: u64 = 1 << 28;
+const PIXEL_LIMIT: usize = 1 << 28;
 
 /// What of a picture counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +117,7 @@ impl Picture {
         let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
         let decode = match ending.to_ascii_lowercase().as_str() {
             "png" => png,
-            "exr" => exr,
+            "exr" => |bytes: &[u8], _| decode_exr(bytes, PIXEL_LIMIT, |rgba| rgba),
             _ => return Err(PictureError::Kind { path: path.into() }),
         };
         let bytes = read_bounded(path, FILE_LIMIT)?;
@@ -169,15 +168,13 @@ impl Picture {
     }
 }
 
-/// Width, height and linear RGBA, rows from the top.
-type Decoded = Result<(usize, usize, Vec<[f32; 4]>), String>;
-
-fn png(bytes: &[u8], space: Space) -> Decoded {
+/// Linear RGBA of a PNG.
+fn png(bytes: &[u8], space: Space) -> Decoded<[f32; 4]> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(|e| e.to_string())?;
     let (width, height) = (reader.info().width, reader.info().height);
-    if u64::from(width) * u64::from(height) > PIXEL_LIMIT {
+    if u64::from(width) * u64::from(height) > PIXEL_LIMIT as u64 {
         return Err(format!("{width} x {height} pixels are too many"));
     }
     let size = reader.output_buffer_size().ok_or("it is too large")?;
@@ -213,29 +210,6 @@ fn png(bytes: &[u8], space: Space) -> Decoded {
     Ok((width as usize, height as usize, pixels))
 }
 
-fn exr(bytes: &[u8], _: Space) -> Decoded {
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .rgba_channels(
-            |size, _| (size.width(), vec![[0.0f32; 4]; size.area()]),
-            |(width, pixels): &mut (usize, Vec<[f32; 4]>),
-             at,
-             (r, g, b, a): (f32, f32, f32, f32)| {
-                if let Some(pixel) = pixels.get_mut(at.y() * *width + at.x()) {
-                    *pixel = [r, g, b, a];
-                }
-            },
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(|e| e.to_string())?;
-    let size = image.layer_data.size;
-    let (_, pixels) = image.layer_data.channel_data.pixels;
-    Ok((size.width(), size.height(), pixels))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -269,6 +243,16 @@ mod tests {
         assert!((at(0.25)).abs() < 1e-6 && (at(0.5) - 0.5).abs() < 1e-6);
         assert!((at(0.75) - 1.0).abs() < 1e-6 && (at(1.0) - 0.5).abs() < 1e-6);
         assert!((at(-1.5) - at(0.5)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_picture_that_announces_too_much_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.exr");
+        let bytes = crate::io::boastful_exr(1 << 20, 1 << 20);
+        std::fs::write(&path, bytes).unwrap();
+        let error = Picture::read(&path, Channel::Red, Space::Linear).unwrap_err();
+        assert!(error.to_string().contains("too many"), "{error}");
     }
 
     #[test]

@@ -3,9 +3,7 @@
 use super::{Environment, radiance_hdr};
 use crate::blame::Blame;
 use crate::color::Rgb;
-use crate::io::{FileError, read_bounded};
-use exr::prelude::{ReadChannels, ReadLayers};
-use std::io::Cursor;
+use crate::io::{Decoded, FileError, decode_exr, read_bounded};
 use std::path::{Path, PathBuf};
 
 /// Largest file read, bytes: 16384 x 8192 in 32-bit floats, uncompressed, is 1.6e9.
@@ -76,7 +74,7 @@ impl EnvironmentError {
 pub fn load(path: &Path) -> Result<Environment, EnvironmentError> {
     let extension = path.extension().map(|e| e.to_ascii_lowercase());
     let decode = match extension.as_deref().and_then(|e| e.to_str()) {
-        Some("exr") => decode_exr,
+        Some("exr") => exr,
         Some("hdr" | "pic" | "rgbe") => radiance_hdr::decode,
         _ => return Err(EnvironmentError::Kind { path: path.into() }),
     };
@@ -107,26 +105,22 @@ pub fn load(path: &Path) -> Result<Environment, EnvironmentError> {
     Ok(Environment::from_texels(width, height, texels))
 }
 
-/// Width, height and radiances, or what was wrong.
-pub(super) type Decoded = Result<(usize, usize, Vec<Rgb>), String>;
+fn exr(bytes: &[u8]) -> Decoded<Rgb> {
+    let most = WIDTH_LIMIT * WIDTH_LIMIT / 2;
+    decode_exr(bytes, most, |[r, g, b, _]| Rgb::new(r, g, b))
+}
 
-fn decode_exr(bytes: &[u8]) -> Decoded {
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .rgb_channels(
-            |size, _| (size.width(), vec![Rgb::ZERO; size.area()]),
-            |(width, texels): &mut (usize, Vec<Rgb>), at, (r, g, b): (f32, f32, f32)| {
-                if let Some(texel) = texels.get_mut(at.y() * *width + at.x()) {
-                    *texel = Rgb::new(r, g, b);
-                }
-            },
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))
-        .map_err(|e| e.to_string())?;
-    let size = image.layer_data.size;
-    let (_, texels) = image.layer_data.channel_data.pixels;
-    Ok((size.width(), size.height(), texels))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_that_announces_too_much_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sky.exr");
+        let bytes = crate::io::boastful_exr(1 << 20, 1 << 19);
+        std::fs::write(&path, bytes).unwrap();
+        let reason = load(&path).unwrap_err().to_string();
+        assert!(reason.contains("too many"), "{reason}");
+    }
 }

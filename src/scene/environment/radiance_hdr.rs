@@ -1,13 +1,13 @@
 //! Reader of Radiance pictures (.hdr): run-length coded RGBE (Ward 1991).
 
-use super::file::Decoded;
 use crate::color::Rgb;
+use crate::io::Decoded;
 
 /// Largest side taken.
 const SIDE_LIMIT: usize = 1 << 15;
 
 /// Decodes a picture whose rows run from the top and columns from the left.
-pub(super) fn decode(bytes: &[u8]) -> Decoded {
+pub(super) fn decode(bytes: &[u8]) -> Decoded<Rgb> {
     let mut rest = bytes;
     let signature = line(&mut rest)?;
     if !signature.starts_with("#?") {
