@@ -26,10 +26,15 @@ fn floats(values: &[f32]) -> Vec<u8> {
 
 /// Exit code and messages of the program, which may not take a gigabyte of memory.
 fn convert(folder: &Path, file: &[u8], output: &str) -> (Option<i32>, String) {
+    convert_under("ulimit -v 1000000", folder, file, output)
+}
+
+/// The same under limits of a shell. `output` may have more arguments after it.
+fn convert_under(limits: &str, folder: &Path, file: &[u8], output: &str) -> (Option<i32>, String) {
     let input = folder.join("in.hair");
     fs::write(&input, file).unwrap();
     let program = env!("CARGO_BIN_EXE_vair");
-    let line = format!("ulimit -v 1000000; exec '{program}' convert in.hair -o {output}");
+    let line = format!("{limits}; exec '{program}' convert in.hair -o {output}");
     let run = Command::new("sh")
         .args(["-c", &line])
         .current_dir(folder)
@@ -122,5 +127,42 @@ fn files_that_lie_are_refused_in_words_and_leave_nothing() {
         assert!(said.contains(word), "{what}: {said}");
         let left: Vec<_> = fs::read_dir(folder.path()).unwrap().collect();
         assert_eq!(left.len(), 1, "{what}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_scale_that_makes_widths_infinite_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    // Points and a thickness for each.
+    let file = hair(
+        1,
+        2,
+        6,
+        1,
+        &floats(&[0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 1e30, 1e30]),
+    );
+    let (code, said) = convert(folder.path(), &file, "x.npz --scale 1e20");
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("makes widths infinite"), "{said}");
+    assert!(!folder.path().join("x.npz").exists());
+}
+
+/// Where no more can be written, with grids and with strands alike.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_is_told_with_the_name_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let points: Vec<f32> = (0..3000)
+        .flat_map(|i| [0.02 * (i / 2) as f32, 0.1 * (i % 2) as f32, 0.0])
+        .collect();
+    let file = hair(1500, 3000, 2, 1, &floats(&points));
+    for name in ["x.vdb", "x.npz"] {
+        let limits = "trap '' XFSZ; ulimit -f 16";
+        let (code, said) = convert_under(limits, folder.path(), &file, name);
+        assert_eq!(code, Some(2), "{name}: {said}");
+        assert!(said.contains(&format!("cannot write {name}")), "{said}");
+        let left: Vec<_> = fs::read_dir(folder.path()).unwrap().collect();
+        assert_eq!(left.len(), 1, "{name}");
     }
 }

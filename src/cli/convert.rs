@@ -1,11 +1,12 @@
 //! `vair convert`: strands from one file format into another.
 
+use super::grids::write_grids;
 use super::{Console, Failure};
 use crate::blame::Blame;
 use crate::export::lines::{self, LineFormat, LineSet};
 use crate::export::volume::{self, Curves, Field, Mesh, VolumeSettings};
 use crate::export::{ExportError, Format};
-use crate::io::{AtomicFile, check_writable};
+use crate::io::check_writable;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
 
@@ -99,8 +100,12 @@ fn scaled(mut set: LineSet, args: &Args) -> Result<LineSet, Failure> {
     for width in &mut set.widths {
         *width = args.width_um.map_or(*width * args.scale, |um| um * 1e-6);
     }
-    if !set.points.iter().all(|p| p.is_finite()) {
-        let message = format!("--scale {} makes coordinates infinite", args.scale);
+    let infinite = [
+        ("coordinates", set.points.iter().any(|p| !p.is_finite())),
+        ("widths", set.widths.iter().any(|w| !w.is_finite())),
+    ];
+    if let Some((what, _)) = infinite.iter().find(|(_, any)| *any) {
+        let message = format!("--scale {} makes {what} infinite", args.scale);
         return Err(Failure::new(Blame::Input, message));
     }
     if set.widths.iter().all(|w| *w == 0.0) {
@@ -139,7 +144,8 @@ fn write_density(path: &Path, set: &LineSet, console: &Console) -> Result<(), Fa
     };
     let cancel = console.cancel();
     let plan = volume::plan(&curves, &settings, console, cancel)?;
-    let file = AtomicFile::create(path)?;
-    let (file, _) = volume::write(file, &curves, &no_skin, &plan, &settings, console, cancel)?;
-    Ok(file.commit()?)
+    write_grids(path, |file| {
+        volume::write(file, &curves, &no_skin, &plan, &settings, console, cancel)
+    })?;
+    Ok(())
 }

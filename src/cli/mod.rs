@@ -12,6 +12,7 @@ mod export;
 mod failure;
 mod fiber;
 mod gallery;
+mod grids;
 mod merge;
 mod render;
 mod schema;

@@ -1,6 +1,7 @@
 //! The part of `vair export` that writes grids.
 
 use super::super::bake::parse_bytes;
+use super::super::grids::write_grids;
 use super::super::{Console, Failure};
 use crate::blame::Blame;
 use crate::export::asset::{self, Frame, Parts};
@@ -198,9 +199,9 @@ pub(super) fn run(
         plan.leaves,
         plan.memory as f64 / 1e6
     ));
-    let file = AtomicFile::create(path)?;
-    let (file, written) = volume::write(file, &curves, &skin, &plan, &settings, console, cancel)?;
-    file.commit()?;
+    let written = write_grids(path, |file| {
+        volume::write(file, &curves, &skin, &plan, &settings, console, cancel)
+    })?;
     console.say(format!("{}: {}", path.display(), described(&written)));
     match &args.wrap {
         Some(wrap) => write_wrap(wrap, path, parts, &written, &plan, frame),

@@ -1,10 +1,10 @@
 //! A fiber as grids.
 
+use super::super::grids::write_grids;
 use super::super::{Console, Failure};
 use crate::export::vdb::Meta;
 use crate::export::volume::{FiberGrids, write_fiber};
 use crate::fiber::Fiber;
-use crate::io::AtomicFile;
 use crate::micrograph::absorption_at;
 use crate::species::{HairClass, Species, Station};
 use std::path::Path;
@@ -31,9 +31,9 @@ pub(super) fn write(
         absorption_per_um: absorption_at(class, station),
         provenance: entries.into_iter().map(entry).collect(),
     };
-    let file = AtomicFile::create(path)?;
-    let (file, voxel) = write_fiber(file, fiber, &settings, console, console.cancel())?;
-    file.commit()?;
+    let voxel = write_grids(path, |file| {
+        write_fiber(file, fiber, &settings, console, console.cancel())
+    })?;
     console.say(format!("{}: voxels of {voxel:.4} um", path.display()));
     Ok(())
 }
