@@ -7,9 +7,9 @@ use super::bake::{find_class, find_station};
 use super::stdout::print_json;
 use super::{Console, Failure};
 use crate::blame::Blame;
-use crate::fiber::{Fiber, FiberError};
+use crate::fiber::Fiber;
 use crate::io::{AtomicFile, check_writable};
-use crate::micrograph::{self, Legend, MicrographError, Microscope, Shot, Subject, View, tilt_deg};
+use crate::micrograph::{self, Legend, Microscope, Shot, Subject, View, tilt_deg};
 use crate::species::{self, HairClass, Species, Station};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -103,18 +103,6 @@ enum ViewArg {
     Section,
     /// A piece of the fiber with its front quarter taken out.
     Cutaway,
-}
-
-impl From<MicrographError> for Failure {
-    fn from(error: MicrographError) -> Self {
-        Self::new(error.blame(), error)
-    }
-}
-
-impl From<FiberError> for Failure {
-    fn from(error: FiberError) -> Self {
-        Self::new(error.blame(), error)
-    }
 }
 
 /// `1280x720`.

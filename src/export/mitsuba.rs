@@ -1,4 +1,4 @@
-//! A scene for Mitsuba 3 (3.9 or later): the same strands, skin, light, camera and hair model, so that the
+//! A scene for Mitsuba 3.9 or later: the same strands, skin, light, camera and hair model, so that the
 //! two pictures can be compared.
 //!
 //! A folder of `scene.xml`, `hair.txt` (B-spline control points in millimeters, `x y z radius` a line, an

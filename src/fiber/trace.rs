@@ -111,6 +111,20 @@ impl Fiber {
         self.pigment_on(&rays, region, t)
     }
 
+    /// Pigment at a point of `region`, relative to the cortex as a whole: over a way finer than any
+    /// streak, outward.
+    ///
+    /// * `point`: micrometers, in the fiber's frame.
+    pub fn pigment_at(&self, point: DVec3, region: Region) -> f64 {
+        const STEP_UM: f64 = 0.2;
+        if region != Region::Cortex {
+            return self.medium(region).pigment;
+        }
+        let dir = DVec3::new(point.x, point.y, 0.0).normalize_or(DVec3::X);
+        let from = point - 0.5 * STEP_UM * dir;
+        self.pigment_um(from, dir, region, STEP_UM) / STEP_UM
+    }
+
     #[inline]
     fn pigment_on(&self, rays: &Rays, region: Region, t: f64) -> f64 {
         match region {

@@ -2,6 +2,7 @@
 
 use super::{Decoded, FileError, decode_exr, read_bounded};
 use crate::blame::Blame;
+use crate::color::{Rgb, luminance};
 use glam::Vec2;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -37,7 +38,7 @@ impl Channel {
 
     fn of(self, [r, g, b, a]: [f32; 4]) -> f32 {
         match self {
-            Self::Luminance => 0.2126 * r + 0.7152 * g + 0.0722 * b,
+            Self::Luminance => luminance(Rgb::new(r, g, b)),
             Self::Red => r,
             Self::Green => g,
             Self::Blue => b,

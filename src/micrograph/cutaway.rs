@@ -138,7 +138,7 @@ impl Stage<'_> {
             }
             What::Cut(Region::Cuticle) => pigment::keratin(self.absorption, 0.0),
             What::Cut(_) => {
-                let density = pigment::density(fiber, seen.point);
+                let density = fiber.pigment_at(seen.point, Region::Cortex);
                 pigment::keratin(self.absorption, SLICE_UM * density)
             }
         }

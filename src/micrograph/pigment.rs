@@ -1,6 +1,5 @@
 //! Where the pigment is.
 
-use crate::fiber::{Fiber, Region};
 use crate::species::{HairClass, Station};
 use glam::DVec3;
 
@@ -34,16 +33,6 @@ pub fn absorption_at(class: &HairClass, station: &Station) -> [f64; 3] {
     let here = bands[index].absorption_per_um();
     let there = bands[neighbor.0].absorption_per_um();
     std::array::from_fn(|c| here[c] + neighbor.1 * (there[c] - here[c]))
-}
-
-/// Way over which density is measured, micrometers: finer than any streak.
-const STEP_UM: f64 = 0.2;
-
-/// Density of the pigment at a point of the cortex, relative to the cortex as a whole.
-pub(super) fn density(fiber: &Fiber, point: DVec3) -> f64 {
-    let dir = DVec3::new(point.x, point.y, 0.0).normalize_or(DVec3::X);
-    let from = point - 0.5 * STEP_UM * dir;
-    fiber.pigment_um(from, dir, Region::Cortex, STEP_UM) / STEP_UM
 }
 
 /// Keratin without pigment in white light, linear: faintly yellow.

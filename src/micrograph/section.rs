@@ -52,7 +52,7 @@ pub(super) fn draw(subject: &Subject, area: (usize, usize), raster: &Raster) -> 
             }
             Region::Cuticle => pigment::keratin(absorption, 0.0),
             Region::Cortex => {
-                let density = pigment::density(fiber, point);
+                let density = fiber.pigment_at(point, Region::Cortex);
                 pigment::keratin(absorption, SLICE_UM * density)
             }
         }

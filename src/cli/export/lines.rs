@@ -3,14 +3,8 @@
 use super::super::{Console, Failure};
 use crate::PROGRAM;
 use crate::export::asset::{self, Frame, Parts};
-use crate::export::lines::{self, LineFormat, LineSet, LinesError};
+use crate::export::lines::{self, LineFormat, LineSet};
 use std::path::Path;
-
-impl From<LinesError> for Failure {
-    fn from(error: LinesError) -> Self {
-        Self::new(error.blame(), error)
-    }
-}
 
 /// Writes the strands of a groom with their colors.
 pub(super) fn run(

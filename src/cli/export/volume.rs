@@ -7,9 +7,7 @@ use crate::blame::Blame;
 use crate::export::asset::{self, Frame, Parts};
 use crate::export::usd::{self, Form};
 use crate::export::vdb::{Compression, Meta};
-use crate::export::volume::{
-    self, Curves, Field, Mesh, Plan, VolumeError, VolumeSettings, Written,
-};
+use crate::export::volume::{self, Curves, Field, Mesh, Plan, VolumeSettings, Written};
 use crate::export::{ExportError, Format};
 use crate::io::{AtomicFile, FileError};
 use glam::Vec3;
@@ -53,12 +51,6 @@ enum CompressionArg {
     Zip,
     /// As they are.
     None,
-}
-
-impl From<VolumeError> for Failure {
-    fn from(error: VolumeError) -> Self {
-        Self::new(error.blame(), error)
-    }
 }
 
 /// What was asked for in the words of the library; refuses what cannot be.

@@ -20,6 +20,7 @@ mod tests;
 pub use error::LinesError;
 pub use hair::read as read_hair;
 
+use crate::color::srgb_from_linear;
 use crate::io::AtomicFile;
 use glam::Vec3;
 use std::io::{self, Write};
@@ -156,15 +157,8 @@ fn write_to(out: &mut impl Write, format: LineFormat, lines: &Lines<'_>) -> Resu
 
 /// The linear value as sRGB has it, 0 .. 255.
 fn srgb(linear: Vec3) -> [u8; 3] {
-    linear.to_array().map(|c| {
-        let c = c.clamp(0.0, 1.0);
-        let encoded = if c <= 0.003_130_8 {
-            12.92 * c
-        } else {
-            1.055 * c.powf(1.0 / 2.4) - 0.055
-        };
-        (255.0 * encoded).round() as u8
-    })
+    let of = |c| (255.0 * srgb_from_linear(c)).round() as u8;
+    linear.to_array().map(of)
 }
 
 /// Writes numbers as little-endian bytes, a block at a time.

@@ -15,7 +15,6 @@ struct Node<'a, C, T> {
 }
 
 type Lower<'a, T> = Node<'a, &'a Leaf<T>, T>;
-type Upper<'a, T> = Node<'a, Lower<'a, T>, T>;
 
 /// Appends everything but the values of leaves.
 pub(super) fn put_topology<T: Value>(
@@ -31,7 +30,9 @@ pub(super) fn put_topology<T: Value>(
     };
     out.extend(1u32.to_le_bytes()); // buffers a leaf
     put(background, false, out);
-    let uppers = uppers(tree);
+    let leaves = tree.leaves.iter().map(|leaf| (leaf.origin, leaf));
+    let lowers = nodes(LOWER, leaves, &tree.small).into_iter();
+    let uppers = nodes(UPPER, lowers.map(|l| (l.origin, l)), &tree.large);
     out.extend(0u32.to_le_bytes()); // tiles of the root
     out.extend((uppers.len() as u32).to_le_bytes());
     for upper in &uppers {
@@ -93,68 +94,42 @@ pub(super) fn put_mask(mask: &[u64], out: &mut Vec<u8>) {
     out.extend(mask.iter().flat_map(|word| word.to_le_bytes()));
 }
 
-fn lowers<T: Value>(tree: &Tree<T>) -> Vec<Lower<'_, T>> {
-    let home = |origin: IVec3| origin & !(LOWER - 1);
-    let leaves = tree
-        .leaves
-        .chunk_by(|a, b| home(a.origin) == home(b.origin));
-    let tiles = tree.small.chunk_by(|a, b| home(a.origin) == home(b.origin));
-    let mut tiles = tiles.peekable();
-    let mut nodes = Vec::new();
-    let with_tiles = |tiles| Node {
-        origin: home(first_of(tiles)),
-        children: Vec::new(),
-        tiles,
-    };
-    for leaves in leaves {
-        let origin = home(leaves[0].origin);
-        // Nodes of tiles alone come in between.
-        while let Some(before) = tiles.next_if(|t| leaf_key(home(t[0].origin)) < leaf_key(origin)) {
-            nodes.push(with_tiles(before));
-        }
-        let own = tiles.next_if(|t| home(t[0].origin) == origin);
-        nodes.push(Node {
-            origin,
-            children: leaves.iter().collect(),
-            tiles: own.unwrap_or(&[]),
-        });
-    }
-    nodes.extend(tiles.map(with_tiles));
-    nodes
-}
-
-fn uppers<T: Value>(tree: &Tree<T>) -> Vec<Upper<'_, T>> {
-    let home = |origin: IVec3| origin & !(UPPER - 1);
-    let mut nodes: Vec<Upper<'_, T>> = Vec::new();
-    let mut tiles = tree
-        .large
+/// Nodes of `edge` voxels with what is in them, in the order of the file: as `children` and `tiles` are.
+fn nodes<'a, C, T>(
+    edge: i32,
+    children: impl Iterator<Item = (IVec3, C)>,
+    tiles: &'a [Tile<T>],
+) -> Vec<Node<'a, C, T>> {
+    let home = |origin: IVec3| origin & !(edge - 1);
+    let mut tiles = tiles
         .chunk_by(|a, b| home(a.origin) == home(b.origin))
         .peekable();
-    let with_tiles = |tiles| Node {
-        origin: home(first_of(tiles)),
+    let with = |tiles: &'a [Tile<T>]| Node {
+        origin: home(tiles[0].origin),
         children: Vec::new(),
         tiles,
     };
-    for lower in lowers(tree) {
-        let origin = home(lower.origin);
-        if let Some(node) = nodes.last_mut().filter(|node| node.origin == origin) {
-            node.children.push(lower);
-            continue;
+    let mut nodes: Vec<Node<'a, C, T>> = Vec::new();
+    for (origin, child) in children {
+        let origin = home(origin);
+        if nodes.last().is_none_or(|node| node.origin != origin) {
+            // Nodes of tiles alone come in between.
+            while let Some(before) =
+                tiles.next_if(|t| leaf_key(home(t[0].origin)) < leaf_key(origin))
+            {
+                nodes.push(with(before));
+            }
+            let own = tiles.next_if(|t| home(t[0].origin) == origin);
+            nodes.push(Node {
+                origin,
+                children: Vec::new(),
+                tiles: own.unwrap_or(&[]),
+            });
         }
-        while let Some(before) = tiles.next_if(|t| leaf_key(home(t[0].origin)) < leaf_key(origin)) {
-            nodes.push(with_tiles(before));
+        if let Some(node) = nodes.last_mut() {
+            node.children.push(child);
         }
-        let own = tiles.next_if(|t| home(t[0].origin) == origin);
-        nodes.push(Node {
-            origin,
-            children: vec![lower],
-            tiles: own.unwrap_or(&[]),
-        });
     }
-    nodes.extend(tiles.map(with_tiles));
+    nodes.extend(tiles.map(with));
     nodes
-}
-
-fn first_of<T>(tiles: &[Tile<T>]) -> IVec3 {
-    tiles[0].origin
 }

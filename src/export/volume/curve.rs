@@ -15,9 +15,9 @@ const TURN: f64 = 0.15;
 /// ends pinned by reflected neighbors.
 #[derive(Clone, Copy, Debug)]
 pub struct Curves<'a> {
-    /// Control points, meters.
+    /// Control points, units.
     pub points: &'a [Vec3],
-    /// Full diameter at each control point, meters.
+    /// Full diameter at each control point, units.
     pub widths: &'a [f32],
     /// Start of each curve in `points`; one more entry than curves.
     pub offsets: &'a [u32],
@@ -28,9 +28,9 @@ pub struct Curves<'a> {
 /// A point of a strand between two pieces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Joint {
-    /// Meters.
+    /// Units.
     pub(super) at: DVec3,
-    /// Diameter, meters.
+    /// Diameter, units.
     pub(super) width: f64,
     /// Way along the span, 0 .. 1.
     pub(super) t: f64,
@@ -60,7 +60,7 @@ impl<'a> Curves<'a> {
 
     /// Joints of the span that begins at control point `i`, both ends included.
     ///
-    /// * `step`: the pieces stray from the spline by at most an eighth of this, meters.
+    /// * `step`: the pieces stray from the spline by at most an eighth of this, units.
     pub(super) fn joints(&self, i: usize, curve: usize, step: f64, out: &mut Vec<Joint>) {
         let spans = self.spans(curve);
         let at = |k: usize| self.points[k].as_dvec3();

@@ -99,15 +99,6 @@ pub enum VolumeError {
     Cancelled,
 }
 
-/// The caller has asked to stop.
-pub(super) struct Stopped;
-
-impl From<Stopped> for VolumeError {
-    fn from(_: Stopped) -> Self {
-        Self::Cancelled
-    }
-}
-
 impl VolumeError {
     /// Who has to act.
     pub fn blame(&self) -> Blame {

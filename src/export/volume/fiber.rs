@@ -6,7 +6,7 @@ use crate::export::vdb::{
 };
 use crate::fiber::{Fiber, Region};
 use crate::progress::{Cancel, Progress};
-use glam::{DVec3, IVec3, Vec3};
+use glam::{IVec3, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::io::{Seek, Write};
@@ -15,8 +15,6 @@ use std::io::{Seek, Write};
 const VOXELS: f64 = 4e6;
 /// Most voxels of a fiber: some 600 MB of memory.
 const MOST_VOXELS: f64 = 4e7;
-/// Way over which pigment is measured, micrometers: finer than any streak.
-const STEP_UM: f64 = 0.2;
 
 /// How a fiber is made into grids.
 #[derive(Clone, Debug, Default)]
@@ -169,7 +167,7 @@ fn block(
             continue;
         }
         let medium = fiber.medium(region);
-        let pigment = pigment(fiber, point, region);
+        let pigment = fiber.pigment_at(point, region);
         let absorption = settings
             .absorption_per_um
             .map(|a| (a * pigment + medium.absorption_per_um) as f32);
@@ -182,13 +180,4 @@ fn block(
         block.absorption.set(at, Vec3::from_array(absorption));
     }
     (block.density.active_count() > 0).then_some(block)
-}
-
-/// Pigment relative to the cortex as a whole.
-fn pigment(fiber: &Fiber, point: DVec3, region: Region) -> f64 {
-    if region != Region::Cortex {
-        return fiber.medium(region).pigment;
-    }
-    let dir = DVec3::new(point.x, point.y, 0.0).normalize_or(DVec3::X);
-    fiber.pigment_um(point - 0.5 * STEP_UM * dir, dir, region, STEP_UM) / STEP_UM
 }

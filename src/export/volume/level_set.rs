@@ -1,8 +1,8 @@
 //! The skin as a signed distance in a narrow band.
 
+use super::VolumeError;
 use super::distance::to_triangle;
 use super::winding::Winding;
-use super::{Stopped, VolumeError};
 use crate::export::vdb::{Leaf, Tile, TileSize, Tree};
 use crate::progress::{Cancel, Progress};
 use glam::{DVec3, IVec3, Vec3};
@@ -19,7 +19,7 @@ const ACROSS: i64 = 4000;
 pub struct Mesh<'a> {
     /// Its name, for errors.
     pub name: &'a str,
-    /// Vertices, meters.
+    /// Vertices, units.
     pub positions: &'a [Vec3],
     /// Vertex indices, counter-clockwise seen from outside.
     pub triangles: &'a [[u32; 3]],
@@ -64,9 +64,9 @@ impl Mesh<'_> {
 
 /// The signed distance from a mesh, negative inside.
 ///
-/// * `voxel`: edge of a voxel, meters.
+/// * `voxel`: edge of a voxel, units.
 /// * `shell`: 0 for the solid inside a closed mesh; otherwise the mesh is a plate of this thickness,
-///   meters, and may be open.
+///   units, and may be open.
 /// * Distances are those of the nearest triangle, exact up to rounding; farther than three voxels from the surface
 ///   the value is plus or minus three voxels. Inside is where the mesh winds around at least once,
 ///   so parts may overlap.
@@ -98,7 +98,7 @@ pub(super) fn signed_distance(
         .par_iter()
         .map(|group| {
             if cancel.is_cancelled() {
-                return Err(Stopped.into());
+                return Err(VolumeError::Cancelled);
             }
             progress.advance(1);
             let near: Vec<&[DVec3; 3]> = group.iter().map(|&(_, t)| &corners[t as usize]).collect();

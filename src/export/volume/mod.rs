@@ -33,7 +33,6 @@ pub use weld::weld;
 
 use crate::export::vdb::{Compression, Grid, Leaf, Meta, Tree, Value, Writer};
 use crate::progress::{Cancel, Progress};
-use error::Stopped;
 use field::{scalar_leaf, vector_leaf};
 use glam::{IVec3, Vec3};
 use level_set::signed_distance;
@@ -99,8 +98,6 @@ pub struct Written {
     pub field: Field,
     /// Active voxels.
     pub active: u64,
-    /// Active leaves.
-    pub leaves: usize,
     /// First and last active voxel along each axis.
     pub bounds: Option<(IVec3, IVec3)>,
     /// Sum of the values times the volume of a voxel, the first component of vectors: for the density,
@@ -246,7 +243,6 @@ fn put<T: Value, W: Write + Seek>(
         field,
         active: tree.active_count(),
         bounds: tree.active_bounds(),
-        leaves: tree.leaves().len(),
         integral: sum * plan.voxel.powi(3),
     };
     writer.grid(&Grid {

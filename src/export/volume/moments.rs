@@ -1,8 +1,8 @@
 //! Strands added up in voxels.
 
+use super::VolumeError;
 use super::curve::{Curves, Joint, MOST_STEPS};
 use super::walk::walk;
-use super::{Stopped, VolumeError};
 use crate::export::vdb::Leaf;
 use crate::progress::{Cancel, Progress};
 use glam::{DVec3, IVec3};
@@ -52,7 +52,7 @@ impl Listing {
             .into_par_iter()
             .map(|batch| {
                 if cancel.is_cancelled() {
-                    return Err(Stopped.into());
+                    return Err(VolumeError::Cancelled);
                 }
                 let (mut list, mut joints) = (Vec::new(), Vec::new());
                 let of = batch * BATCH..((batch + 1) * BATCH).min(curves.len());
@@ -93,7 +93,7 @@ impl Listing {
             .par_iter()
             .map_init(buffers, |(moments, joints), group| {
                 if cancel.is_cancelled() {
-                    return Err(Stopped.into());
+                    return Err(VolumeError::Cancelled);
                 }
                 let origin = leaf_origin(group[0].0);
                 moments.fill(Moments::default());

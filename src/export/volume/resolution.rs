@@ -23,8 +23,6 @@ pub(super) fn range(meters_per_unit: f64) -> [f64; 2] {
 /// What is known of a coat before its voxels are filled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// Number of strands.
-    pub strands: usize,
     /// Mean length along control points, units.
     pub mean_length: f64,
     /// Mean diameter by length, units.
@@ -72,7 +70,6 @@ pub(super) fn statistics(
         .iter()
         .sum();
     Ok(Statistics {
-        strands: curves.len(),
         mean_length,
         mean_width: area / length,
         length_density: length / (voxels as f64 * probe.powi(3)),
