@@ -115,6 +115,7 @@ fn numbers_out_of_range() {
     desk.refuses(&format!("{render} --res wide"), 1, &["wide"]);
     desk.refuses(&format!("{render} --strands 0"), 1, &["strand"]);
     desk.refuses(&format!("{render} --crop 900,0,100,100"), 1, &["crop"]);
+    desk.refuses("gallery --coats 0 -o out.png", 1, &["--coats", "1 to 9"]);
     desk.refuses("render red-fox -o out.jpg", 1, &["out.jpg", ".png"]);
     desk.refuses(
         "bake red-fox --face 63 -o out.exr",

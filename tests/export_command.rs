@@ -5,6 +5,9 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
+use vair::groom::{self, GroomSettings};
+use vair::progress::{Cancel, Silent};
+use vair::{skin, species};
 
 fn export(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_vair"))
@@ -63,6 +66,97 @@ fn size_is_said_before_and_counts_after() {
         (0.5..1.1).contains(&(1e6 * foretold / size)),
         "{foretold} MB, {size} bytes"
     );
+}
+
+/// The numbers of the first array of that name in a text asset.
+fn numbers(text: &str, name: &str) -> Vec<f32> {
+    let (_, rest) = text.split_once(&format!("{name} = [")).unwrap();
+    let (array, _) = rest.split_once(']').unwrap();
+    let numbers = array.split([',', '(', ')', ' ']).filter(|n| !n.is_empty());
+    numbers.map(|n| n.parse().unwrap()).collect()
+}
+
+/// The color of the skin at every corner of its triangles.
+fn skin_colors(folder: &Path, coat: &str) -> Vec<[f32; 3]> {
+    let arguments = ["--strands", "500", "--coat", coat, "-o", "fox.usda"];
+    assert!(export(folder, &arguments).status.success());
+    let text = fs::read_to_string(folder.join("fox.usda")).unwrap();
+    let colors = numbers(&text, "primvars:displayColor");
+    let corners = numbers(&text, "faceVertexIndices");
+    let of = |corner: f32| std::array::from_fn(|channel| colors[3 * corner as usize + channel]);
+    corners.into_iter().map(of).collect()
+}
+
+/// The skin under a coat of several colors is tinted as in pictures.
+#[test]
+fn the_skin_is_as_dark_as_the_coat_over_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let coated = skin_colors(folder.path(), "zebra");
+    let plain = skin_colors(folder.path(), "none");
+    let ball = skin::load("ball").unwrap();
+    let mut fox = species::load("red-fox", &[]).unwrap();
+    fox.wear("zebra").unwrap();
+    let settings = GroomSettings {
+        strands: Some(500),
+        seed: 0,
+    };
+    let fur = groom::grow(&ball, &fox, &settings, &Silent, &Cancel::default()).unwrap();
+    let vertices: Vec<u32> = ball.triangles.iter().flatten().copied().collect();
+    assert_eq!(coated.len(), vertices.len());
+    let own = fox.skin_color.map(|c| c as f32);
+    for (corner, &vertex) in vertices.iter().enumerate() {
+        let vertex = vertex as usize;
+        for (channel, own) in own.into_iter().enumerate() {
+            let expected = ball.color[vertex][channel] * own;
+            assert_eq!(plain[corner][channel], expected);
+            let expected = expected * fur.skin_tint[vertex][channel];
+            let found = coated[corner][channel];
+            assert!(
+                (found - expected).abs() <= 1e-6 * expected,
+                "{found} for {expected}"
+            );
+        }
+    }
+    let changed = coated.iter().zip(&plain).filter(|(a, b)| a != b).count();
+    assert!(changed > coated.len() / 2, "{changed} of {}", coated.len());
+}
+
+#[test]
+fn layers_of_the_coat_that_are_left_out_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["--strands", "500", "--coat", "siamese", "-o", "fox.usdc"];
+    let output = export(folder.path(), &arguments);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    assert!(
+        said.contains("warning: layer") && said.contains("left out"),
+        "{said}"
+    );
+}
+
+/// What a skin in other units or with another axis up is told to be, it is for exports too.
+#[test]
+fn skins_in_centimeters_are_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    // 65 cm along the file's z, 20 along x.
+    let tall = "v 0 0 0\nv 20 0 0\nv 0 0 65\nf 1 2 3\n";
+    fs::write(folder.path().join("tall.obj"), tall).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_vair"))
+        .current_dir(folder.path())
+        .args(["export", "red-fox", "--skin", "tall.obj", "--no-material"])
+        .args(["--skin-units", "cm", "--skin-up", "z", "--strands", "500"])
+        .args(["-o", "fox.usda"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    assert!(!said.contains("m large"), "{said}");
+    let text = fs::read_to_string(folder.path().join("fox.usda")).unwrap();
+    let (_, mesh) = text.split_once("def Mesh \"skin\"").unwrap();
+    let extent = numbers(mesh, "extent");
+    for (found, expected) in extent.iter().zip([0.0, 0.0, 0.0, 0.2, 0.65, 0.0]) {
+        assert!((found - expected).abs() < 1e-6, "{extent:?}");
+    }
 }
 
 #[test]

@@ -109,6 +109,16 @@ fn a_page_reads_from_root_to_tip_and_names_its_sources() {
     assert!(bears.contains("brown-bear or polar-bear"), "{bears}");
 }
 
+/// The JSON of a coat says which place of the body a layer is near.
+#[test]
+fn landmarks_of_a_coat_are_named() {
+    let desk = Desk::new();
+    let json = desk.says(&["show", "cat", "--json", "--set", "coat=siamese"]);
+    let value: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let limits = &value["species"]["coat"]["layers"][1]["limits"];
+    assert_eq!(limits[0]["extent"]["near"]["landmark"], "paws", "{limits}");
+}
+
 #[test]
 fn a_new_file_is_good_and_never_replaces_another() {
     let desk = Desk::new();

@@ -3,6 +3,7 @@
 mod lines;
 mod volume;
 
+use super::skin::SkinArgs;
 use super::{Console, Failure, bake::parse_count};
 use crate::assembly;
 use crate::bake::{Cache, Settings};
@@ -14,7 +15,7 @@ use crate::export::usd::Form;
 use crate::export::{ExportError, Format};
 use crate::groom::{self, Forecast, GroomSettings};
 use crate::io::check_writable;
-use crate::skin::{self, Skin};
+use crate::skin::Skin;
 use crate::species::{self, Species};
 use std::path::PathBuf;
 
@@ -29,7 +30,7 @@ const MOST_LEVELS: usize = 4;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   vair export red-fox -o fox.usdc
-  vair export mink --skin sofa.obj --strands 1e6 -o sofa.usdc
+  vair export mink --skin sofa.obj --skin-units cm --strands 1e6 -o sofa.usdc
   vair export red-fox --profile unreal --units cm --up z -o fox.usd
   vair export cat --coat tabby -o tabby.usdc
   vair export red-fox --layout payload -o fox.usda
@@ -55,9 +56,8 @@ pub(super) struct Args {
     /// tortoiseshell, the path of a recipe, or none; if not given, that of the species.
     #[arg(long, value_name = "NAME")]
     coat: Option<String>,
-    /// What the fur grows on: body, ball, swatch, tress, or an OBJ, PLY or glTF mesh in meters.
-    #[arg(long, default_value = "body")]
-    skin: String,
+    #[command(flatten)]
+    on: SkinArgs,
     /// Strands in all; if not given, as many as the animal has, at most 250000.
     #[arg(long, value_parser = parse_count)]
     strands: Option<u64>,
@@ -182,7 +182,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         Format::of(output)?;
         check_writable(output)?;
     }
-    let skin = skin::load(&args.skin)?;
+    let skin = args.on.load()?;
     for warning in &skin.warnings {
         console.say(format!("warning: {warning}"));
     }
@@ -201,6 +201,9 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         false => Vec::new(),
     };
     let groom = groom::grow(&skin, &species, &grown, console, cancel)?;
+    for warning in &groom.warnings {
+        console.say(format!("warning: {warning}"));
+    }
     let levels = asset::levels(&groom, &skin, &species, args.levels)?;
     let parts = Parts {
         groom: &groom,

@@ -37,7 +37,7 @@ pub(super) struct Args {
     )]
     columns: Vec<ColumnArg>,
     /// Instead of the library: so many of the built-in coats on the built-in body.
-    #[arg(long, value_name = "COUNT", conflicts_with_all = ["species", "columns", "pages"])]
+    #[arg(long, value_name = "COUNT", value_parser = parse_coats, conflicts_with_all = ["species", "columns", "pages"])]
     coats: Option<usize>,
     /// Height of the sheet's pictures, pixels.
     #[arg(long, default_value_t = 144)]
@@ -94,6 +94,15 @@ impl From<ColumnArg> for Column {
     }
 }
 
+/// How many coats the sheet shows.
+fn parse_coats(text: &str) -> Result<usize, String> {
+    let most = gallery::COATS.len();
+    match text.parse() {
+        Ok(count) if (1..=most).contains(&count) => Ok(count),
+        _ => Err(format!("must be 1 to {most}, as many as there are coats")),
+    }
+}
+
 /// Colors of the palette of a page's picture: 64 show no steps in fur and keratin.
 const PAGE_COLORS: usize = 64;
 
@@ -127,16 +136,6 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         }
         check_writable(path)?;
     }
-    let mut animals = Vec::new();
-    let all: Vec<String> = species::ids().map(str::to_owned).collect();
-    let names = if args.species.is_empty() {
-        &all
-    } else {
-        &args.species
-    };
-    for name in names {
-        animals.push(species::load_with_origins(name.trim(), &[])?);
-    }
     let cache = if args.no_cache {
         None
     } else {
@@ -161,6 +160,16 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
             sheet.write_png(path)?;
         }
         return Ok(());
+    }
+    let mut animals = Vec::new();
+    let all: Vec<String> = species::ids().map(str::to_owned).collect();
+    let names = if args.species.is_empty() {
+        &all
+    } else {
+        &args.species
+    };
+    for name in names {
+        animals.push(species::load_with_origins(name.trim(), &[])?);
     }
     let mut refused = Vec::new();
     if !args.output.is_empty() {

@@ -17,6 +17,7 @@ mod merge;
 mod render;
 mod schema;
 mod signals;
+mod skin;
 mod species;
 mod stdout;
 mod table;
@@ -50,7 +51,7 @@ enum Command {
     /// Put the shards of a bake together.
     Merge(merge::Args),
     /// Render a still of a species: bakes what it needs, grows the fur, traces the picture.
-    Render(render::Args),
+    Render(Box<render::Args>),
     /// Write the fur of a species for other programs: Universal Scene Description.
     Export(export::Args),
     /// Look into scattering tables, dye them, draw them.

@@ -48,7 +48,8 @@ impl MitsubaScene<'_> {
         std::fs::create_dir_all(folder).map_err(|e| FileError::new("create", folder, e))?;
         write_with(&folder.join("hair.txt"), |out| self.write_hair(out))?;
         if let Some((skin, color)) = self.skin {
-            write_with(&folder.join("skin.ply"), |out| write_skin(skin, color, out))?;
+            let of = |vertex| self.groom.skin_color(skin, vertex) * color;
+            write_with(&folder.join("skin.ply"), |out| write_skin(skin, of, out))?;
         }
         write_environment(self.environment, &folder.join("environment.exr"))?;
         AtomicFile::write_all_to(&folder.join("scene.xml"), self.xml().as_bytes())
@@ -178,7 +179,7 @@ fn interpolating_b_spline(points: &[Vec4]) -> Vec<Vec4> {
     all
 }
 
-fn write_skin(skin: &Skin, color: Rgb, out: &mut dyn Write) -> io::Result<()> {
+fn write_skin(skin: &Skin, color: impl Fn(usize) -> Rgb, out: &mut dyn Write) -> io::Result<()> {
     write!(
         out,
         "ply\nformat binary_little_endian 1.0\nelement vertex {}\n",
@@ -193,11 +194,7 @@ fn write_skin(skin: &Skin, color: Rgb, out: &mut dyn Write) -> io::Result<()> {
         skin.triangles.len()
     )?;
     for i in 0..skin.positions.len() {
-        for v in [
-            skin.positions[i] * UNITS,
-            skin.normals[i],
-            skin.color[i] * color,
-        ] {
+        for v in [skin.positions[i] * UNITS, skin.normals[i], color(i)] {
             for x in v.to_array() {
                 out.write_all(&x.to_le_bytes())?;
             }

@@ -34,7 +34,7 @@ const BODY: Model = Model {
 
 /// Draws the sheet.
 ///
-/// * `count`: how many of [`COATS`].
+/// * `count`: how many of [`COATS`], at least 1.
 /// * `height`: of each picture, pixels.
 ///
 /// # Errors
@@ -45,7 +45,7 @@ pub fn coats_sheet(
     height: usize,
     progress: &dyn Progress,
 ) -> Result<Canvas, GalleryError> {
-    let coats = &COATS[..count.min(COATS.len())];
+    let coats = &COATS[..count.clamp(1, COATS.len())];
     let (width, gap) = (height * 4 / 3, 4);
     let rows = coats.len().div_ceil(COLUMNS);
     let mut canvas = Canvas::new(

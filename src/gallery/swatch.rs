@@ -43,13 +43,12 @@ pub(super) fn draw(
     let cancel = studio.cancel;
     let bake = studio.bake();
     let materials = assembly::materials(species, &bake, studio.cache, &Silent, cancel)?;
-    let mut skin = skin::load(model.skin)?;
+    let skin = skin::load(model.skin)?;
     let settings = GroomSettings {
         strands: Some(model.strands * studio.quality.strands),
         seed: 0,
     };
     let groom = groom::grow(&skin, species, &settings, &Silent, cancel)?;
-    skin.tint(&groom.skin_tint);
     let view = View {
         zoom: model.zoom,
         ..View::from_direction(skin.view)

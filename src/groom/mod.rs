@@ -60,7 +60,7 @@ pub struct Groom {
     /// Names of the parts of the coat's pattern; the first has the pigment of the species itself.
     pub coats: Vec<String>,
     /// Factor on the skin's color at each of its vertices, so that a thin coat shows no other color
-    /// through; empty for a coat of one color. See [`crate::skin::Skin::tint`].
+    /// through; empty for a coat of one color. See [`Groom::skin_color`].
     pub skin_tint: Vec<Vec3>,
     /// What could not be grown as asked, one sentence each.
     pub warnings: Vec<String>,
@@ -85,6 +85,13 @@ impl Groom {
     /// Control points of strand `index`, root first.
     pub fn strand(&self, index: usize) -> &[Vec3] {
         &self.points[self.range(index)]
+    }
+
+    /// Factor on the species' skin color at a vertex of the skin that this groom grows on: the skin's own,
+    /// tinted by the coat.
+    pub fn skin_color(&self, skin: &Skin, vertex: usize) -> Vec3 {
+        let tint = self.skin_tint.get(vertex).copied().unwrap_or(Vec3::ONE);
+        skin.color[vertex] * tint
     }
 }
 

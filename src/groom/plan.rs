@@ -2,7 +2,7 @@
 
 use super::GroomError;
 use crate::skin::Skin;
-use crate::species::Species;
+use crate::species::{ClassGroom, Species};
 
 /// Strands grown when nobody says how many, if the animal has more.
 pub const DEFAULT_STRANDS: usize = 250_000;
@@ -77,19 +77,22 @@ pub(super) fn plan(
         });
     }
     check_spacing(skin, area_m2, total)?;
-    // Short hair covers less.
+    // Short hair covers less: what the coat leaves of it, and what is left when it is cut.
     let hair = species.coat.as_ref().map_or(1.0, |coat| coat.hair);
+    let grown_mm = |groom: &ClassGroom| (hair * groom.length_mm).min(groom.trim_mm);
     let weights: Vec<f64> = (species.classes.iter().zip(&natural))
         .map(|(class, natural)| {
-            let hair = class.groom.length_mm * class.groom.diameter_um;
-            (natural * hair).powf(CLASS_FLATTENING)
+            // Over the coat's factor, which all classes share.
+            let length_mm = class.groom.length_mm.min(class.groom.trim_mm / hair);
+            let area = length_mm * class.groom.diameter_um;
+            (natural * area).powf(CLASS_FLATTENING)
         })
         .collect();
     let counts = share(&natural, &weights, total);
     Ok((0..counts.len())
         .map(|i| {
             let groom = &species.classes[i].groom;
-            let hair_area = hair * groom.length_mm * 1e-3 * groom.diameter_um * 1e-6;
+            let hair_area = grown_mm(groom) * 1e-3 * groom.diameter_um * 1e-6;
             ClassPlan {
                 strands: counts[i],
                 natural: natural[i],
@@ -190,6 +193,7 @@ fn width_scale(natural: f64, grown: usize, layer: f64, diameter_um: f64) -> f64 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::groom::tests::fox;
 
     #[test]
     fn counts_sum_grow_and_keep_guard_hair() {
@@ -206,6 +210,30 @@ mod tests {
         let thin = share(&natural, &weights, 3_000);
         assert!((900..1_100).contains(&thin[0]), "{thin:?}");
         assert_eq!(share(&natural, &weights, 300_000)[0], 11_500);
+    }
+
+    /// A thinned coat of cut hair is as wide and as well mixed as one of hair that grows no longer.
+    #[test]
+    fn cut_hair_is_planned_as_short_hair() {
+        let skin = crate::skin::load("swatch").unwrap();
+        let planned = |species: &Species| -> Vec<(usize, f64)> {
+            let plan = plan(&skin, 0.01, species, Some(60_000)).unwrap();
+            plan.iter().map(|c| (c.strands, c.width_scale)).collect()
+        };
+        let mut whole = fox();
+        for coat in ["none", "zebra"] {
+            whole.wear(coat).unwrap();
+            let hair = whole.coat.as_ref().map_or(1.0, |coat| coat.hair);
+            let (mut cut, mut short) = (whole.clone(), whole.clone());
+            cut.classes[1].groom.trim_mm = 3.0;
+            short.classes[1].groom.length_mm = 3.0 / hair;
+            let (whole, cut, short) = (planned(&whole), planned(&cut), planned(&short));
+            assert!(cut[1].0 < whole[1].0 && cut[1].1 > whole[1].1, "{cut:?}");
+            for (cut, short) in cut.iter().zip(&short) {
+                assert_eq!(cut.0, short.0);
+                assert!((cut.1 / short.1 - 1.0).abs() < 1e-12, "{cut:?} {short:?}");
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
-//! Frames, turns, exponentials, the unicube map and Fresnel equations.
+//! Frames, turns, exponentials, steps, the unicube map and Fresnel equations.
 
 pub mod decay;
+pub mod ease;
 pub mod frame;
 pub mod fresnel;
 pub mod symmetry;

@@ -184,7 +184,10 @@ impl Scene {
             strands.carry_sides(parts.groom);
         }
         let surface = match parts.skin {
-            Some((skin, color)) => Some(Surface::build(skin, color)?),
+            Some((skin, color)) => {
+                let of = |vertex| parts.groom.skin_color(skin, vertex) * color;
+                Some(Surface::build(skin, of)?)
+            }
             None => None,
         };
         let mut scene = Self {

@@ -30,8 +30,11 @@ pub struct SurfaceHit {
 }
 
 impl Surface {
-    /// * `color`: linear reflectance 0..1, multiplied by the skin's own factor at each vertex.
-    pub fn build(skin: &Skin, color: Rgb) -> Result<Self, SceneError> {
+    /// * `color`: linear reflectance 0..1 of each vertex.
+    ///
+    /// # Errors
+    /// A skin whose arrays do not fit together, or too many triangles.
+    pub fn build(skin: &Skin, color: impl Fn(usize) -> Rgb) -> Result<Self, SceneError> {
         let bad = skin.normals.len() != skin.positions.len()
             || skin.color.len() != skin.positions.len()
             || (skin.triangles.iter().flatten()).any(|&i| i as usize >= skin.positions.len());
@@ -61,9 +64,7 @@ impl Surface {
                 .map(|t| pick(&skin.positions, t, UNITS_PER_METER))
                 .collect(),
             normals: sorted().map(|t| pick(&skin.normals, t, 1.0)).collect(),
-            colors: sorted()
-                .map(|t| pick(&skin.color, t, 1.0).map(|factor| factor * color))
-                .collect(),
+            colors: sorted().map(|t| t.map(|i| color(i as usize))).collect(),
             accel,
         })
     }

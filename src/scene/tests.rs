@@ -227,7 +227,7 @@ fn a_closed_skin_does_not_leak() {
                 .push([at(j, i), at(j + 1, i + 1), at(j, i + 1)]);
         }
     }
-    let surface = Surface::build(&skin, Rgb::ONE).unwrap();
+    let surface = Surface::build(&skin, |_| Rgb::ONE).unwrap();
     let mut rng = Rng::new(6, 0);
     for k in 0..20_000 {
         // Half of the rays aim at points on edges.

@@ -6,6 +6,7 @@
 use super::landmarks::{Landmark, along};
 use super::sculpt::{Group, Part, Sculpture, Shape};
 use super::{Skin, builtin, surface_nets};
+use crate::math::ease::smoothstep;
 use glam::{EulerRot, Mat3, Quat, Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -93,11 +94,6 @@ impl Vertex {
 /// length factor as much as hairs are shorter, up to a limit that leaves strands for the trunk.
 const SHORT: f32 = 0.6;
 const DENSEST: f32 = 5.0;
-
-fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
-    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
-}
 
 /// 1 on and at the rims of eyes and nose, falling to 0 around them.
 fn bareness(p: Vec3) -> f32 {

@@ -2,9 +2,11 @@
 
 use super::Skin;
 use glam::Vec3;
+use serde::Serialize;
 
 /// A place of a body. Paired places are one: both eyes, all paws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Landmark {
     /// Tip of the nose.
     Nose,

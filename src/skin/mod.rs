@@ -65,13 +65,7 @@ pub struct Skin {
 /// # Errors
 /// [`SkinError`] names the file, what is wrong and where.
 pub fn load(name_or_path: &str) -> Result<Skin, SkinError> {
-    match name_or_path {
-        "body" => Ok(body::body()),
-        "ball" => Ok(builtin::ball()),
-        "swatch" => Ok(builtin::swatch()),
-        "tress" => Ok(builtin::tress()),
-        _ => load_file(name_or_path),
-    }
+    load_placed(name_or_path, Placing::default())
 }
 
 /// How a mesh file is meant.
@@ -106,17 +100,25 @@ impl Default for Placing {
 /// # Errors
 /// As [`load`]; a unit that is not a positive number, or a mesh that such a unit makes endless.
 pub fn load_placed(name_or_path: &str, placing: Placing) -> Result<Skin, SkinError> {
-    if BUILT_IN.contains(&name_or_path) {
-        return load(name_or_path);
+    match name_or_path {
+        "body" => Ok(body::body()),
+        "ball" => Ok(builtin::ball()),
+        "swatch" => Ok(builtin::swatch()),
+        "tress" => Ok(builtin::tress()),
+        _ => load_file(name_or_path, placing),
     }
-    if !(placing.unit_m.is_finite() && placing.unit_m > 0.0) {
-        return Err(SkinError::Unit {
-            unit_m: placing.unit_m,
-        });
+}
+
+fn load_file(name: &str, placing: Placing) -> Result<Skin, SkinError> {
+    let unit_m = placing.unit_m;
+    if !(unit_m.is_finite() && unit_m > 0.0) {
+        return Err(SkinError::Unit { unit_m });
     }
-    let path = Path::new(name_or_path);
+    let path = Path::new(name);
     if Format::of(path).is_none() {
-        return load_file(name_or_path);
+        return Err(SkinError::UnknownName {
+            name: name.to_owned(),
+        });
     }
     let mut mesh = mesh_file::read(path)?;
     let turned = |v: Vec3| match placing.up {
@@ -124,44 +126,15 @@ pub fn load_placed(name_or_path: &str, placing: Placing) -> Result<Skin, SkinErr
         Up::Z => Vec3::new(v.x, v.z, -v.y),
     };
     for p in &mut mesh.positions {
-        *p = turned(*p) * placing.unit_m;
+        *p = turned(*p) * unit_m;
     }
     for n in &mut mesh.normals {
         *n = turned(*n);
     }
-    mesh.into_skin(name_or_path)
-}
-
-fn load_file(name: &str) -> Result<Skin, SkinError> {
-    let path = Path::new(name);
-    if Format::of(path).is_none() {
-        return Err(SkinError::UnknownName {
-            name: name.to_owned(),
-        });
-    }
-    mesh_file::read(path)?.into_skin(name)
+    mesh.into_skin(name)
 }
 
 impl Skin {
-    /// Scales the mesh about the origin, for files in other units than meters.
-    pub fn scale(&mut self, factor: f32) {
-        for p in &mut self.positions {
-            *p *= factor;
-        }
-        for point in self.landmarks.iter_mut().flat_map(|(_, points)| points) {
-            *point *= factor;
-        }
-        self.body = self.body.map(|length| length * factor);
-        self.floor = self.floor.map(|height| height * factor);
-    }
-
-    /// Multiplies the color of each vertex; of tints that are not one a vertex, as many as there are.
-    pub fn tint(&mut self, tints: &[Vec3]) {
-        for (color, tint) in self.color.iter_mut().zip(tints) {
-            *color *= *tint;
-        }
-    }
-
     /// The corners of triangle `index`.
     pub fn corners(&self, index: usize) -> [Vec3; 3] {
         self.triangles[index].map(|v| self.positions[v as usize])

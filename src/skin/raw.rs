@@ -27,13 +27,15 @@ impl RawMesh {
                 faces: self.faces,
             });
         }
-        if is_inside_out(&self.positions, &triangles) {
+        let edges = edges(&triangles);
+        let closed = edges.values().all(|edge| edge.balance == 0);
+        if closed && is_negative(&self.positions, &triangles) {
             for t in &mut triangles {
                 t.swap(1, 2);
             }
             warnings.push("the mesh is closed but faces inward: turned inside out".to_owned());
         }
-        let shared = crowded_edges(&triangles);
+        let shared = edges.values().filter(|edge| edge.faces > 2).count();
         if shared > 0 {
             warnings.push(format!(
                 "{shared} edges belong to more than two faces: hair grows on all of them"
@@ -158,34 +160,36 @@ fn angle_weighted_normals(skin: &Skin) -> Vec<Vec3> {
     sums.into_iter().map(|n| n.normalize_or(Vec3::Y)).collect()
 }
 
-/// Whether every edge has its opposite and the enclosed volume is negative.
-fn is_inside_out(positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
-    let mut balance: HashMap<(u32, u32), i32> = HashMap::new();
-    let mut volume = 0.0;
-    let origin = positions[triangles[0][0] as usize].as_dvec3();
-    for t in triangles {
-        let [a, b, c] = t.map(|v| positions[v as usize].as_dvec3() - origin);
-        volume += a.dot(b.cross(c));
-        if volume.is_nan() {
-            return false;
-        }
-        for (from, to) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
-            let sign = if from < to { 1 } else { -1 };
-            *balance.entry((from.min(to), from.max(to))).or_default() += sign;
-        }
-    }
-    volume < 0.0 && balance.values().all(|&b| b == 0)
+/// An edge of a mesh.
+#[derive(Clone, Copy, Default)]
+struct Edge {
+    /// Faces that have it.
+    faces: u32,
+    /// Of these, how many more run from its lower to its higher vertex than back: 0 on a closed mesh.
+    balance: i32,
 }
 
-/// Edges of more than two triangles.
-fn crowded_edges(triangles: &[[u32; 3]]) -> usize {
-    let mut count: HashMap<(u32, u32), u32> = HashMap::with_capacity(2 * triangles.len());
+/// All edges by their vertices, the lower first.
+fn edges(triangles: &[[u32; 3]]) -> HashMap<(u32, u32), Edge> {
+    let mut edges: HashMap<_, Edge> = HashMap::with_capacity(2 * triangles.len());
     for t in triangles {
         for (from, to) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
-            *count.entry((from.min(to), from.max(to))).or_default() += 1;
+            let edge = edges.entry((from.min(to), from.max(to))).or_default();
+            edge.faces += 1;
+            edge.balance += if from < to { 1 } else { -1 };
         }
     }
-    count.values().filter(|&&n| n > 2).count()
+    edges
+}
+
+/// Whether the volume that a closed mesh encloses is negative.
+fn is_negative(positions: &[Vec3], triangles: &[[u32; 3]]) -> bool {
+    let origin = positions[triangles[0][0] as usize].as_dvec3();
+    let volume: f64 = (triangles.iter())
+        .map(|t| t.map(|v| positions[v as usize].as_dvec3() - origin))
+        .map(|[a, b, c]| a.dot(b.cross(c)))
+        .sum();
+    volume < 0.0
 }
 
 /// Head to tail is unknown: along the longest horizontal axis, and down.

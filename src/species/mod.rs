@@ -16,6 +16,7 @@ pub mod model;
 mod origin;
 mod overrides;
 mod pattern;
+mod recipe;
 mod schema;
 mod shape;
 mod spectrum;

@@ -10,34 +10,27 @@ use serde_json::{Map, Value, json};
 /// The schema (draft 2020-12).
 pub fn json_schema() -> Value {
     let mut definitions = Map::new();
-    let mut root = table(&fields::SPECIES, &mut definitions);
     let class = reference(&fields::CLASS, &mut definitions);
-    root["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
-    root["title"] = json!("Vair species");
+    let mut root = root_schema(&fields::SPECIES, "Vair species", definitions);
     // Every key that is not of the root is a hair class.
     root["additionalProperties"] = class;
-    definitions.insert("source".to_owned(), source());
-    root["$defs"] = Value::Object(definitions);
     root
 }
 
 /// The schema of pattern recipes (draft 2020-12).
 pub fn pattern_schema() -> Value {
-    let mut definitions = Map::new();
-    let mut root = table(&PATTERN, &mut definitions);
-    root["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
-    root["title"] = json!("Vair scale pattern");
-    definitions.insert("source".to_owned(), source());
-    root["$defs"] = Value::Object(definitions);
-    root
+    root_schema(&PATTERN, "Vair scale pattern", Map::new())
 }
 
 /// The schema of coat recipes (draft 2020-12).
 pub fn coat_schema() -> Value {
-    let mut definitions = Map::new();
-    let mut root = table(&COAT, &mut definitions);
+    root_schema(&COAT, "Vair coat", Map::new())
+}
+
+fn root_schema(shape: &Shape, title: &str, mut definitions: Map<String, Value>) -> Value {
+    let mut root = table(shape, &mut definitions);
     root["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
-    root["title"] = json!("Vair coat");
+    root["title"] = json!(title);
     definitions.insert("source".to_owned(), source());
     root["$defs"] = Value::Object(definitions);
     root
@@ -94,6 +87,7 @@ fn property(field: &Field, definitions: &mut Map<String, Value>) -> Value {
             "items": number("number", *range),
         })),
         Kind::Setting(range) => number("number", *range),
+        Kind::Count(range) => number("integer", *range),
         Kind::Words(choices) => {
             json!({ "type": "object", "additionalProperties": one_of(choices) })
         }

@@ -61,6 +61,8 @@ pub(crate) enum Kind {
     Color(Range),
     /// A number that is no measurement and needs no origin.
     Setting(Range),
+    /// As `Setting`, whole.
+    Count(Range),
     /// Table of free keys, each with one of these words.
     Words(&'static [Choice]),
     /// One of these words.

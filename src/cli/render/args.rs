@@ -3,6 +3,7 @@
 use super::{output, parse};
 use crate::bsdf::ChiangParameters;
 use crate::cli::bake::parse_count;
+use crate::cli::skin::SkinArgs;
 use crate::render::Crop;
 use std::path::PathBuf;
 
@@ -24,15 +25,8 @@ pub(in crate::cli) struct Args {
     /// tortoiseshell, the path of a recipe, or none; if not given, that of the species.
     #[arg(long, value_name = "NAME")]
     pub(super) coat: Option<String>,
-    /// What the fur grows on: body, ball, swatch, tress, or an OBJ, PLY or glTF mesh.
-    #[arg(long, default_value = "body")]
-    pub(super) skin: String,
-    /// What a unit of the skin's file is.
-    #[arg(long, value_enum, default_value = "m")]
-    pub(super) skin_units: UnitArg,
-    /// Which axis of the skin's file points up.
-    #[arg(long, value_enum, default_value = "y")]
-    pub(super) skin_up: UpArg,
+    #[command(flatten)]
+    pub(super) on: SkinArgs,
     /// The light: studio, sky, white, or a latitude-longitude EXR or HDR file.
     #[arg(long, default_value = "studio")]
     pub(super) env: String,
@@ -150,26 +144,6 @@ pub(in crate::cli) struct Args {
     /// Where the picture goes: .png or .exr, or .safetensors for its sums. May repeat.
     #[arg(long, short, required = true)]
     pub(super) output: Vec<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(super) enum UnitArg {
-    /// Meters.
-    M,
-    /// Centimeters.
-    Cm,
-    /// Millimeters.
-    Mm,
-    /// Inches.
-    In,
-}
-
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(super) enum UpArg {
-    /// Y, as in glTF.
-    Y,
-    /// Z, as in Blender.
-    Z,
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]

@@ -16,9 +16,9 @@ use crate::groom::{self, GroomSettings};
 use crate::io::check_writable;
 use crate::render::{Film, Filter, RenderJob, Rendering, Sampler};
 use crate::scene::{Backdrop, Environment, Scene, SceneParts, Sun, View, load_environment};
-use crate::skin::{self, Placing, Skin, Up};
+use crate::skin::Skin;
 use crate::species;
-use args::{FilterArg, ModelArg, SamplerArg, UnitArg, UpArg};
+use args::{FilterArg, ModelArg, SamplerArg};
 use glam::Vec3;
 use output::Origin;
 use sha2::{Digest, Sha256};
@@ -54,21 +54,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     }
     let given = args.table.iter().map(|path| material::given_table(path));
     let given = given.collect::<Result<Vec<_>, Failure>>()?;
-    let mut skin = skin::load_placed(
-        &args.skin,
-        Placing {
-            unit_m: match args.skin_units {
-                UnitArg::M => 1.0,
-                UnitArg::Cm => 0.01,
-                UnitArg::Mm => 0.001,
-                UnitArg::In => 0.0254,
-            },
-            up: match args.skin_up {
-                UpArg::Y => Up::Y,
-                UpArg::Z => Up::Z,
-            },
-        },
-    )?;
+    let skin = args.on.load()?;
     let view = view(args, &skin)?;
     let environment = environment(args, &view)?;
     for warning in &skin.warnings {
@@ -85,11 +71,10 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     };
     let groom = groom::grow(&skin, &species, &settings, console, cancel)?;
     stages.end("groom");
-    skin.tint(&groom.skin_tint);
     for warning in &groom.warnings {
         console.say(format!("warning: {warning}"));
     }
-    console.say(format!("{} strands on {}", groom.strands(), args.skin));
+    console.say(format!("{} strands on {}", groom.strands(), args.on.skin));
     let color = Vec3::from_array(species.skin_color.map(|c| c as f32));
     let scene = Scene::build(SceneParts {
         groom: &groom,
@@ -194,7 +179,7 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
 fn identity(args: &Args, species: &species::Species, scene: &Scene) -> Origin {
     let mut settings = format!(
         "skin {} env {} env-turn {} res {}x{} sampler {:?} strands {:?} bake-photons {}",
-        args.skin,
+        args.on.skin,
         args.env,
         args.env_turn,
         args.res[0],

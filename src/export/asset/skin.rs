@@ -2,14 +2,15 @@
 
 use super::frame::Frame;
 use crate::export::usd::{Array, Attribute, Prim, Rows, Value};
+use crate::groom::Groom;
 use crate::skin::Skin;
 use glam::Vec3;
 use std::sync::Arc;
 
 /// The skin's triangles; face `i` is the triangle that `skinprim` means.
 ///
-/// * `color`: of the skin, linear reflectance.
-pub(super) fn mesh<'a>(skin: &'a Skin, frame: Frame, color: Vec3) -> Prim<'a> {
+/// * `groom`: the fur on it; `color`: the species' skin, linear reflectance.
+pub(super) fn mesh<'a>(skin: &'a Skin, groom: &'a Groom, frame: Frame, color: Vec3) -> Prim<'a> {
     let Vertices { source, corners } = vertices(skin);
     let source: Arc<[u32]> = source.into();
     let each = |of: fn(&Skin, usize) -> Vec3, turn: fn(Frame, Vec3) -> Vec3| {
@@ -39,7 +40,7 @@ pub(super) fn mesh<'a>(skin: &'a Skin, frame: Frame, color: Vec3) -> Prim<'a> {
     });
     let shades = Arc::clone(&source);
     let colors = Rows::each(source.len(), move |i| {
-        (skin.color[shades[i] as usize] * color).to_array()
+        (groom.skin_color(skin, shades[i] as usize) * color).to_array()
     });
     mesh.primvar(
         "color3f[]",

@@ -208,7 +208,12 @@ impl<'p, 'a> Builder<'p, 'a> {
 
     fn geometry(&self) -> Prim<'a> {
         let mut geometry = Prim::new("Scope", "geo");
-        let mut mesh = skin::mesh(self.parts.skin, self.settings.frame, self.skin_color());
+        let mut mesh = skin::mesh(
+            self.parts.skin,
+            self.parts.groom,
+            self.settings.frame,
+            self.skin_color(),
+        );
         self.bind(&mut mesh, "skin");
         geometry.children.push(mesh);
         let full = &self.parts.levels[0];

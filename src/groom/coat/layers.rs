@@ -4,6 +4,7 @@ use super::net::Net;
 use super::turing::{self, Diffusion, POINTS_A_WAVE, Wanted};
 use super::{GroomError, Shares};
 use crate::groom::follicle::{Follicle, Surface};
+use crate::math::ease::smoothstep;
 use crate::progress::Cancel;
 use crate::sampling::hash64;
 use crate::skin::{Landmark, Skin};
@@ -14,6 +15,7 @@ use glam::Vec3;
 use noise::{NoiseFn, OpenSimplex};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 /// Wavelength of the spots that a rosette's ring breaks into, over that of the rosettes.
 pub(super) const FRAGMENT: f64 = 0.42;
@@ -21,6 +23,9 @@ pub(super) const FRAGMENT: f64 = 0.42;
 const MIN_POINTS: usize = 3_000;
 /// Where ends of the body begin to be ends: the share of a body within which patterns get finer.
 const ENDS_M: f32 = 0.3;
+
+/// What a field is grown from, pattern and seed, and its value at each point.
+type Grown = (Turing, u64, Rc<[f32]>);
 
 /// Paints over one skin.
 pub(super) struct Painter<'a> {
@@ -32,7 +37,10 @@ pub(super) struct Painter<'a> {
     /// Meters in a millimeter of the recipe.
     scale: f32,
     seed: u64,
-    distances: RefCell<BTreeMap<Landmark, Option<Vec<f32>>>>,
+    /// Way along the skin from each landmark that was asked for.
+    distances: RefCell<BTreeMap<Landmark, Rc<[f32]>>>,
+    /// Fields that were grown, by what they are grown from: both parts of a rosette have the same.
+    fields: RefCell<Vec<Grown>>,
 }
 
 impl<'a> Painter<'a> {
@@ -52,6 +60,7 @@ impl<'a> Painter<'a> {
             scale,
             seed,
             distances: RefCell::default(),
+            fields: RefCell::default(),
         }
     }
 
@@ -67,7 +76,7 @@ impl<'a> Painter<'a> {
         let mut shares = vec![bare; self.net.len()];
         for (index, layer) in recipe.layers.iter().enumerate() {
             let unknown = layer.limits.iter().find_map(|limit| match limit.extent {
-                Extent::Near { landmark, .. } if !self.knows(landmark) => Some(landmark),
+                Extent::Near { landmark, .. } if self.places(landmark).is_none() => Some(landmark),
                 _ => None,
             });
             if let Some(landmark) = unknown {
@@ -91,20 +100,21 @@ impl<'a> Painter<'a> {
         Ok(shares)
     }
 
-    fn knows(&self, landmark: Landmark) -> bool {
-        self.skin.landmarks.iter().any(|(l, _)| *l == landmark)
+    /// Where a landmark is, if the skin says so.
+    fn places(&self, landmark: Landmark) -> Option<&'a [Vec3]> {
+        let mut all = self.skin.landmarks.iter();
+        let (_, points) = all.find(|(l, _)| *l == landmark)?;
+        Some(points)
     }
 
-    /// Way from a landmark to each point, meters; infinite where it is not known.
-    fn distance(&self, landmark: Landmark) -> Vec<f32> {
+    /// Way from a landmark to each point, meters; infinite where the skin does not say where it is.
+    fn distance(&self, landmark: Landmark) -> Rc<[f32]> {
         let mut known = self.distances.borrow_mut();
         let found = known.entry(landmark).or_insert_with(|| {
-            let mut all = self.skin.landmarks.iter();
-            let (_, points) = all.find(|(l, _)| *l == landmark)?;
-            Some(self.net.distances(points))
+            let places = self.places(landmark).unwrap_or_default();
+            self.net.distances(places).into()
         });
-        let far = || vec![f32::INFINITY; self.net.len()];
-        found.clone().unwrap_or_else(far)
+        Rc::clone(found)
     }
 
     /// How much of a layer each point gets, 0..1.
@@ -217,7 +227,16 @@ impl<'a> Painter<'a> {
         })
     }
 
-    fn turing(&self, turing: &Turing, seed: u64, cancel: &Cancel) -> Option<Vec<f32>> {
+    fn turing(&self, turing: &Turing, seed: u64, cancel: &Cancel) -> Option<Rc<[f32]>> {
+        let from = Turing {
+            cover: None,
+            ..*turing
+        };
+        let grown = self.fields.borrow();
+        if let Some((.., field)) = grown.iter().find(|(t, s, _)| (*t, *s) == (from, seed)) {
+            return Some(Rc::clone(field));
+        }
+        drop(grown);
         let wanted = Wanted {
             wavelength: turing.wavelength_mm as f32 * self.scale,
             balance: turing.balance as f32,
@@ -227,7 +246,10 @@ impl<'a> Painter<'a> {
             push: &[],
             seed: hash64(self.seed ^ seed),
         };
-        self.grow(wanted, turing.fine as f32, cancel)
+        let field: Rc<[f32]> = self.grow(wanted, turing.fine as f32, cancel)?.into();
+        let mut grown = self.fields.borrow_mut();
+        grown.push((from, seed, Rc::clone(&field)));
+        Some(field)
     }
 
     /// Grows a pattern on as few points as it needs, and carries it over to all.
@@ -286,8 +308,8 @@ impl<'a> Painter<'a> {
             Landmark::Paws,
             Landmark::TailTip,
         ];
-        for end in ends.into_iter().filter(|end| self.knows(*end)) {
-            for (s, d) in scale.iter_mut().zip(self.distance(end)) {
+        for end in ends {
+            for (s, &d) in scale.iter_mut().zip(&*self.distance(end)) {
                 let here = fine + (1.0 - fine) * smoothstep(0.2 * reach, 1.3 * reach, d);
                 *s = s.min(here);
             }
@@ -326,9 +348,4 @@ fn quantile(values: &[f32], share: f32) -> f32 {
     }
     let at = ((sorted.len() - 1) as f32 * share.clamp(0.0, 1.0)) as usize;
     *sorted.select_nth_unstable_by(at, f32::total_cmp).1
-}
-
-fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
-    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }

@@ -128,20 +128,32 @@ impl Reader<'_> {
                 }
                 return Some(Some(recipe));
             }
-            Err(SpeciesError::Invalid(errors)) => {
-                for problem in &errors.problems {
-                    let at = errors.locate(&problem.place);
-                    let message = format!("`coat`: {at}: {}", problem.message);
-                    self.problems
-                        .push(&item.place, message, problem.hint.clone());
-                }
-            }
-            Err(error) => {
-                let hint = "the path of a coat is relative to this file";
-                self.conflict(&item.place, format!("`coat`: {error}"), hint);
-            }
+            Err(error) => self.refused_recipe(&item.place, "coat", "coat", error),
         }
         None
+    }
+
+    /// Reports what is wrong with a recipe at the place that names it.
+    ///
+    /// * `path`: of the key there; `what`: the recipe is of.
+    pub(super) fn refused_recipe(
+        &mut self,
+        place: &Place,
+        path: &str,
+        what: &str,
+        error: SpeciesError,
+    ) {
+        let SpeciesError::Invalid(errors) = error else {
+            let hint = format!("the path of a {what} is relative to this file");
+            self.problems
+                .push(place, format!("`{path}`: {error}"), Some(hint));
+            return;
+        };
+        for problem in &errors.problems {
+            let at = errors.locate(&problem.place);
+            let message = format!("`{path}`: {at}: {}", problem.message);
+            self.problems.push(place, message, problem.hint.clone());
+        }
     }
 
     fn class(

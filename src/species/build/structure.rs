@@ -4,7 +4,7 @@ use super::{Reader, number, number_of, place_of, tables};
 use crate::species::check::{Checked, Item, Value, join};
 use crate::species::error::Place;
 use crate::species::model::{Cortex, Cuticle, Margin, Section, Station, Structure};
-use crate::species::pattern::{CuticlePattern, PatternError, PatternLayout, recipe_of};
+use crate::species::pattern::{CuticlePattern, PatternLayout, recipe_of};
 
 /// Index of air, for fibers without voids where nothing reads it.
 pub(super) const AIR: f64 = 1.0003;
@@ -260,18 +260,7 @@ impl Reader<'_> {
                 self.recipes.insert(file.clone(), text);
                 return Some(pattern);
             }
-            Err(PatternError::File(error)) => {
-                let message = format!("`{path}`: {error}");
-                let hint = "the path of a recipe is relative to this file";
-                self.conflict(place, message, hint);
-            }
-            Err(PatternError::Invalid(errors)) => {
-                for problem in &errors.problems {
-                    let at = errors.locate(&problem.place);
-                    let message = format!("`{path}`: {at}: {}", problem.message);
-                    self.problems.push(place, message, problem.hint.clone());
-                }
-            }
+            Err(error) => self.refused_recipe(place, &path, "recipe", error),
         }
         None
     }

@@ -21,6 +21,7 @@ impl Checker<'_> {
             Kind::Names => self.names(node, path),
             Kind::Sources => self.sources(node, path),
             Kind::Setting(range) => self.number(node, path, *range, false),
+            Kind::Count(range) => self.number(node, path, *range, true),
             Kind::Words(choices) => self.words(node, path, choices),
             Kind::Choice(choices) => self.choice(node, path, choices),
             Kind::ChoiceOrFile(choices) => match &node.data {

@@ -1,7 +1,7 @@
 //! The fields of a coat recipe.
 
-use crate::species::fields::BAND;
-use crate::species::shape::{Choice, Field, Kind, Range, Shape};
+use crate::species::fields::{BAND, number};
+use crate::species::shape::{Choice, Field, Kind, Shape};
 
 /// The whole file.
 pub(crate) static COAT: Shape = Shape {
@@ -89,7 +89,7 @@ static LAYER: Shape = Shape {
         ),
         Field::optional(
             "seed",
-            Kind::Setting(number(0.0, 1e6, "")),
+            Kind::Count(number(0.0, 1e6, "")),
             "Another number gives another pattern of the same kind; 0 when left out.",
         ),
         Field::layered(
@@ -321,8 +321,4 @@ const fn choice(name: &'static str, doc: &'static str) -> Choice {
         doc,
         keys: &[],
     }
-}
-
-const fn number(min: f64, max: f64, unit: &'static str) -> Range {
-    Range { min, max, unit }
 }

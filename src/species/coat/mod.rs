@@ -80,7 +80,7 @@ pub enum CoatPattern {
     Rosettes {
         /// The spots that open into rosettes.
         spots: Turing,
-        /// What is painted: 0 the rings, 1 what they enclose.
+        /// Whether what the rings enclose is painted, not the rings.
         inside: bool,
     },
     /// Irregular patches by noise.
@@ -155,7 +155,6 @@ pub enum Extent {
     /// Around a landmark, by the way along the skin.
     Near {
         /// The landmark.
-        #[serde(skip)]
         landmark: Landmark,
         /// Distance of the border.
         within_mm: f64,

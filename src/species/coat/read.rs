@@ -5,18 +5,15 @@ use super::{
     CoatLayer, CoatLimit, CoatPattern, CoatRecipe, CoatZone, Extent, Join, Lay, Side, Turing,
     library,
 };
-use crate::io::{Channel, FileError, Picture, Space, read_bounded};
+use crate::io::{Channel, Picture, Space};
 use crate::skin::Landmark;
 use crate::species::build::{Reader, number, tables};
-use crate::species::check::{Checked, Value, check_table};
-use crate::species::error::{Place, Problems, SpeciesError, SpeciesErrors, closest, suggestion};
+use crate::species::check::{Checked, Value};
+use crate::species::error::{Problems, SpeciesError, SpeciesErrors, closest, suggestion};
 use crate::species::model::PigmentBand;
-use crate::species::tree;
+use crate::species::recipe::{self, missing, need, text, word};
 use std::path::Path;
 use std::sync::Arc;
-
-/// Longest recipe, bytes. The built-in ones have some kB.
-const FILE_LIMIT: u64 = 256 << 10;
 
 /// The coat of that name, or in the file at that path if it ends in `.toml`; and the text of it.
 ///
@@ -37,16 +34,7 @@ pub(crate) fn coat_of(name: &str, folder: &Path) -> Result<(CoatRecipe, String),
         return Ok((recipe, (*text).to_owned()));
     }
     let path = folder.join(name);
-    let refuse = |reason: String| {
-        let error = std::io::Error::new(std::io::ErrorKind::InvalidData, reason);
-        FileError::new("read", &path, error)
-    };
-    // A pipe or a device would never end or never begin.
-    if std::fs::metadata(&path).is_ok_and(|m| !m.is_file()) {
-        return Err(refuse("it is no regular file".to_owned()).into());
-    }
-    let text = String::from_utf8(read_bounded(&path, FILE_LIMIT)?)
-        .map_err(|e| refuse(format!("it is not UTF-8 text: {}", e.utf8_error())))?;
+    let text = recipe::read(&path)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let recipe = parse(&text, &stem, &path.display().to_string())?;
     Ok((recipe, text))
@@ -56,29 +44,14 @@ pub(crate) fn coat_of(name: &str, folder: &Path) -> Result<(CoatRecipe, String),
 ///
 /// * `file`: for messages; its folder is where maps are looked for.
 fn parse(text: &str, name: &str, file: &str) -> Result<CoatRecipe, SpeciesErrors> {
-    let mut problems = Problems::default();
-    let recipe = match tree::parse(text) {
-        Ok(root) => {
-            let (checked, _) = check_table(&root, &COAT, &mut problems);
-            let folder = Path::new(file).parent().unwrap_or(Path::new(""));
-            recipe(&checked, name, folder, &mut problems)
-        }
-        Err((message, span)) => {
-            problems.push(&Place::File(span), format!("not TOML: {message}"), None);
-            None
-        }
-    };
-    problems.finish(file, text, &[])?;
-    recipe.ok_or_else(|| SpeciesErrors::unexplained(file, text, &[]))
+    let folder = Path::new(file).parent().unwrap_or(Path::new(""));
+    recipe::parse(text, file, &COAT, |root, problems| {
+        build(root, name, folder, problems)
+    })
 }
 
 /// Builds a checked recipe; `None` only if a problem was reported.
-fn recipe(
-    root: &Checked,
-    name: &str,
-    folder: &Path,
-    problems: &mut Problems,
-) -> Option<CoatRecipe> {
+fn build(root: &Checked, name: &str, folder: &Path, problems: &mut Problems) -> Option<CoatRecipe> {
     let mut zones: Vec<CoatZone> = Vec::new();
     for table in tables(root, "zones").unwrap_or_default() {
         let mut bands = |key: &str| -> Option<Vec<PigmentBand>> {
@@ -196,7 +169,7 @@ fn pattern(table: &Checked, folder: &Path, problems: &mut Problems) -> Option<Co
 }
 
 fn map(table: &Checked, folder: &Path, problems: &mut Problems) -> Option<CoatPattern> {
-    let Some(Value::Text(file)) = table.get("file").map(|i| &i.value) else {
+    let Some(file) = text(table, "file") else {
         missing(table, "file", problems);
         return None;
     };
@@ -256,35 +229,6 @@ fn extent(table: &Checked, problems: &mut Problems) -> Option<Extent> {
     }
 }
 
-fn need(table: &Checked, key: &str, problems: &mut Problems) -> Option<f64> {
-    let value = number(table, key);
-    if table.get(key).is_none() {
-        missing(table, key, problems);
-    }
-    value
-}
-
-fn missing(table: &Checked, key: &str, problems: &mut Problems) {
-    if !table.is_misspelt(key) {
-        let message = format!("`{}` is missing", table.path_of(key));
-        problems.push(&table.place, message, None);
-    }
-}
-
-fn text(table: &Checked, key: &str) -> Option<String> {
-    match &table.get(key)?.value {
-        Value::Text(text) => Some(text.clone()),
-        _ => None,
-    }
-}
-
-fn word(table: &Checked, key: &str) -> Option<&'static str> {
-    match table.get(key)?.value {
-        Value::Choice(word) => Some(word),
-        _ => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::fields::{COATS, LANDMARKS};
@@ -327,6 +271,7 @@ file = "missing.png"
 [[layers]]
 zone = "dark"
 pattern = "plain"
+seed = 2.5
 size_mm = 3
 [[layers.where]]
 near = "nose"
@@ -341,6 +286,7 @@ within_mm = 3
             "`layers.0.wavelength_mm` is missing",
             "missing.png",
             "`layers.2.size_mm` has no meaning with pattern \"plain\"",
+            "`layers.2.seed` is 2.5, expected a whole number from 0 to",
             "`layers.2.where.0` says",
         ] {
             assert!(said.contains(part), "{part} in\n{said}");

@@ -131,6 +131,6 @@ pub(crate) static BAND: Shape = Shape {
     ],
 };
 
-pub(super) const fn number(min: f64, max: f64, unit: &'static str) -> Range {
+pub(crate) const fn number(min: f64, max: f64, unit: &'static str) -> Range {
     Range { min, max, unit }
 }

@@ -1,6 +1,7 @@
 //! The fields of a pattern recipe.
 
-use crate::species::shape::{Choice, Field, Kind, Range, Shape};
+use crate::species::fields::number;
+use crate::species::shape::{Choice, Field, Kind, Shape};
 
 /// The whole file.
 pub(crate) static PATTERN: Shape = Shape {
@@ -187,7 +188,3 @@ const PHASES: &[Choice] = &[
         keys: &[],
     },
 ];
-
-const fn number(min: f64, max: f64, unit: &'static str) -> Range {
-    Range { min, max, unit }
-}

@@ -9,7 +9,7 @@ mod read;
 
 pub(crate) use fields::PATTERN;
 pub use library::{PATTERN_LIBRARY, pattern_names};
-pub(crate) use read::{PatternError, recipe_of};
+pub(crate) use read::recipe_of;
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 

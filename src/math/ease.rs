@@ -1,0 +1,7 @@
+//! A step without corners.
+
+/// 0 at `from`, 1 at `to` and beyond, level at both; `to` may be below `from`.
+pub fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
