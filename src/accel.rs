@@ -1,9 +1,9 @@
 //! The only file that names the acceleration structure's crate: what it cannot take is refused
 //! here, and its order of traversal is hidden from results.
 //!
-//! Scenes are in millimeters, and meshes of fibers in units of the radius, because the crate's nodes ignore everything nearer than a fixed
-//! 1e-4 units: a tenth of a micrometer in a scene, well below the width of a hair. In meters it would be
-//! a tenth of a millimeter, and scattered rays would pass through the strands around them.
+//! Skins are in millimeters, and meshes of fibers in units of the radius, because the crate's nodes ignore everything nearer than a fixed
+//! 1e-4 units: a tenth of a micrometer of skin, well below the width of a hair. In meters it would be a
+//! tenth of a millimeter, and light that leaves the skin would pass through the folds beside it.
 
 use crate::sampling::hash64;
 use glam::{UVec2, Vec3, Vec3A};

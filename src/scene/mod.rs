@@ -199,15 +199,13 @@ impl Scene {
             backdrop: parts.backdrop,
             view: parts.view,
         };
-        let points = scene.subject();
-        let Some(height) = points.iter().map(|p| p.y).reduce(f32::min) else {
+        let bounds = scene.subject().map(|p| (p, p));
+        let Some((lo, hi)) = bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else {
             return Err(SceneError::Empty);
         };
-        let lo = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
-        let hi = points.iter().copied().reduce(Vec3::max).unwrap_or_default();
         scene.ground = parts.ground.map(|reflectance| Ground {
             reflectance,
-            height,
+            height: lo.y,
             center: 0.5 * (lo + hi),
             reach: 1.5 * (hi - lo).length(),
             open: scene.environment.irradiance_up() / std::f32::consts::PI,
@@ -218,7 +216,8 @@ impl Scene {
 
     /// The camera for a picture of a given width over height.
     pub fn camera(&self, aspect: f32) -> Camera {
-        Camera::framing(&self.subject(), &self.view, aspect)
+        let points: Vec<Vec3> = self.subject().collect();
+        Camera::framing(&points, &self.view, aspect)
     }
 
     /// The nearest thing in front of a ray.
@@ -250,13 +249,13 @@ impl Scene {
     }
 
     /// Points that have to be in the picture.
-    fn subject(&self) -> Vec<Vec3> {
+    fn subject(&self) -> impl Iterator<Item = Vec3> {
         let strands = self.strands.joints().map(|(_, j)| j.xyz());
         let skin = self
             .surface
             .iter()
             .flat_map(|s| s.corners().iter().flatten().copied());
-        strands.chain(skin).collect()
+        strands.chain(skin)
     }
 }
 
@@ -300,8 +299,8 @@ pub enum SceneError {
         /// Where, millimeters.
         at: Vec3,
     },
-    /// Too many things in exactly the same place.
-    #[error("{count} strand segments or triangles fill exactly the same box at {at} mm")]
+    /// Too many triangles in exactly the same place.
+    #[error("{count} triangles of the skin fill exactly the same box at {at} mm")]
     Coincident {
         /// How many.
         count: usize,

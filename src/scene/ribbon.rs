@@ -10,7 +10,6 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 
 /// Two ends of a segment, scene units (millimeters): xyz the axis, w half the width.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(32))]
 pub struct Segment {
     /// End toward the root.
     pub root: Vec4,
@@ -19,13 +18,6 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// Smallest box that holds the segment at any facing: of the spheres at both ends.
-    pub fn bounds(&self) -> (Vec3, Vec3) {
-        let (a, b) = (self.root.xyz(), self.tip.xyz());
-        let (ra, rb) = (self.root.w, self.tip.w);
-        ((a - ra).min(b - rb), (a + ra).max(b + rb))
-    }
-
     /// Where a ray meets the ribbon.
     ///
     /// * `dir`: unit length.

@@ -117,7 +117,11 @@ impl Tree {
             return None;
         }
         #[cfg(target_arch = "x86_64")]
-        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("bmi1") {
+        if is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("popcnt")
+            && is_x86_feature_detected!("lzcnt")
+        {
             #[allow(unsafe_code, reason = "measured faster; the processor was asked")]
             // SAFETY: the processor has what the function enables.
             return unsafe { self.search_avx2::<ANY>(&line, limit, &ignored) };

@@ -250,11 +250,14 @@ impl Fur<'_> {
         };
         let mut groups = vec![Group::new(&items, 0, items.len())];
         while groups.len() < CHILDREN {
+            let size = |i: usize| match is_even {
+                true => groups[i].count() as f32,
+                false => groups[i].bounds.area(),
+            };
             let largest = |least: usize| {
-                let area = |i: usize| groups[i].bounds.area();
                 (0..groups.len())
                     .filter(|&i| groups[i].count() > least)
-                    .max_by(|&a, &b| area(a).total_cmp(&area(b)).then(b.cmp(&a)))
+                    .max_by(|&a, &b| size(a).total_cmp(&size(b)).then(b.cmp(&a)))
             };
             let Some(i) = largest(LEAVES * RUNS).or_else(|| largest(RUNS)) else {
                 break;
@@ -353,4 +356,35 @@ fn cheapest(bins: &Bins) -> Option<(usize, usize)> {
         }
     }
     best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever the sizes of the boxes, eight parts of one size: else [`DEPTH`] is no bound.
+    #[test]
+    fn even_parts_have_one_size() {
+        let count = 800;
+        let joints: Vec<Vec4> = (0..count)
+            .flat_map(|i| {
+                let size = 1.02f32.powi(i);
+                [size, 1.01 * size].map(|x| Vec4::new(x, 0.3 * x, -x, 1e-3 * x))
+            })
+            .collect();
+        let runs: Vec<Run> = (0..count as u32)
+            .map(|i| Run {
+                joint: 2 * i,
+                segments: 1,
+            })
+            .collect();
+        let fur = Fur {
+            joints: &joints,
+            runs: &runs,
+        };
+        let mut numbers: Vec<u32> = (0..count as u32).collect();
+        let groups = fur.deal(&mut numbers, &Mat3::IDENTITY, true);
+        let counts: Vec<usize> = groups.iter().map(Group::count).collect();
+        assert_eq!(counts, [count as usize / CHILDREN; CHILDREN]);
+    }
 }
