@@ -24,6 +24,7 @@ pub mod export;
 pub mod fiber;
 pub mod gallery;
 pub mod groom;
+mod hex;
 pub mod image;
 pub mod io;
 pub mod math;

@@ -1,9 +1,9 @@
 //! The name of a bake: a hash of everything that decides its bits.
 
 use super::Settings;
+use crate::hex::hex_digest;
 use crate::species::Structure;
 use serde_json::Value;
-use sha2::{Digest, Sha256};
 
 /// Raised whenever geometry, photon walk or tally change what comes out between two versions.
 const FORMAT: u32 = 11;
@@ -45,15 +45,6 @@ impl Recipe {
     pub(super) fn content(recipe_hash: &str, photons: u64) -> String {
         hex_digest(format!("{recipe_hash} {photons}").as_bytes())
     }
-}
-
-/// SHA-256 in hexadecimal.
-pub(super) fn hex_digest(bytes: &[u8]) -> String {
-    hex(&Sha256::digest(bytes))
-}
-
-pub(super) fn hex(digest: &[u8]) -> String {
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn plain(value: &(impl serde::Serialize + std::fmt::Debug)) -> Value {

@@ -5,10 +5,11 @@
 //! JSON, and `sha256`, the checksum of that string followed by the arrays.
 
 use super::SumsError;
-use super::content::{Recipe, hex};
+use super::content::Recipe;
 use super::plan::Plan;
 use super::settings::check;
 use super::tally::Tally;
+use crate::hex::hex;
 use crate::io::{AtomicFile, FileError};
 use crate::table::Provenance;
 use serde::{Deserialize, Serialize};

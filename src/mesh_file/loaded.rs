@@ -1,9 +1,9 @@
 //! A mesh that is kept with what refers to it.
 
 use super::{Format, MeshFileError, RawMesh, read};
+use crate::hex::hex;
 use serde::{Serialize, Serializer};
 use sha2::{Digest, Sha256};
-use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -61,11 +61,7 @@ fn digest(mesh: &RawMesh) -> String {
             hash.update(v.to_le_bytes());
         }
     }
-    let mut text = String::new();
-    for byte in hash.finalize() {
-        let _ = write!(text, "{byte:02x}");
-    }
-    text
+    hex(&hash.finalize())
 }
 
 impl std::fmt::Debug for LoadedMesh {

@@ -3,6 +3,7 @@
 use super::Parts;
 use crate::PROGRAM;
 use crate::export::usd::{Attribute, Dictionary, Prim, Value};
+use crate::hex::hex;
 use sha2::{Digest as _, Sha256};
 
 /// Name of a species as an identifier.
@@ -20,7 +21,7 @@ pub fn identifier(name: &str) -> String {
 /// First half of the hash of a species file.
 fn hash(text: &str) -> String {
     let digest = Sha256::digest(text.as_bytes());
-    digest[..8].iter().map(|b| format!("{b:02x}")).collect()
+    hex(&digest[..8])
 }
 
 /// `assetInfo` of the root.
