@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -15,17 +16,21 @@ fn hash(index: u64) -> u64 {
 /// No bake, a small ball of fur.
 const RENDER: &str = "-q render red-fox --model chiang --skin ball --strands 800 --res 32x24 --no-ground --threads 1";
 
+/// The command of a line, in a folder.
+fn command(folder: &Path, line: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_vair"));
+    command.current_dir(folder).args(line.split_whitespace());
+    command
+}
+
+fn run(folder: &Path, line: &str) {
+    assert!(command(folder, line).status().unwrap().success(), "{line}");
+}
+
 #[test]
 fn killed_at_any_moment_it_leaves_the_old_or_the_new_picture_and_goes_on() {
     let desk = tempfile::tempdir().unwrap();
-    let command = |line: &str| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_vair"));
-        command
-            .current_dir(desk.path())
-            .args(line.split_whitespace());
-        command
-    };
-    let run = |line: &str| assert!(command(line).status().unwrap().success(), "{line}");
+    let run = |line: &str| run(desk.path(), line);
     let read = |name: &str| std::fs::read(desk.path().join(name)).unwrap();
     let started = Instant::now();
     run(&format!("{RENDER} --spp 48 -o new.exr"));
@@ -33,7 +38,7 @@ fn killed_at_any_moment_it_leaves_the_old_or_the_new_picture_and_goes_on() {
     let new = read("new.exr");
     run(&format!("{RENDER} --spp 1 -o out.exr"));
     let old = read("out.exr");
-    let line = format!("{RENDER} --spp 48 --checkpoint state --checkpoint-every 0.005 -o out.exr");
+    let line = format!("{RENDER} --spp 48 --checkpoint state --checkpoint-every 5ms -o out.exr");
     let (mut olds, mut resumed) = (0, 0);
     for kill in 0..25 {
         let state = desk.path().join("state");
@@ -43,7 +48,10 @@ fn killed_at_any_moment_it_leaves_the_old_or_the_new_picture_and_goes_on() {
             std::fs::write(desk.path().join("out.exr"), &old).unwrap();
         }
         resumed += u32::from(state.exists());
-        let mut child = command(&line).stderr(Stdio::null()).spawn().unwrap();
+        let mut child = command(desk.path(), &line)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
         std::thread::sleep(Duration::from_micros(hash(kill) % whole));
         child.kill().unwrap();
         child.wait().unwrap();
@@ -60,13 +68,7 @@ fn killed_at_any_moment_it_leaves_the_old_or_the_new_picture_and_goes_on() {
 #[test]
 fn ranges_merged_are_one_run_to_the_byte() {
     let desk = tempfile::tempdir().unwrap();
-    let run = |line: &str| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_vair"));
-        command
-            .current_dir(desk.path())
-            .args(line.split_whitespace());
-        assert!(command.status().unwrap().success(), "{line}");
-    };
+    let run = |line: &str| run(desk.path(), line);
     let read = |name: &str| std::fs::read(desk.path().join(name)).unwrap();
     run(&format!("{RENDER} --spp 20 -o whole.exr -o whole.png"));
     run(&format!("{RENDER} --samples 0..7 -o a.safetensors"));
@@ -74,4 +76,49 @@ fn ranges_merged_are_one_run_to_the_byte() {
     run("-q merge b.safetensors a.safetensors -o merged.exr");
     run("-q merge a.safetensors b.safetensors -o merged.png");
     assert!(read("whole.exr") == read("merged.exr") && read("whole.png") == read("merged.png"));
+}
+
+/// What is no checkpoint of this picture is not written over.
+#[test]
+fn a_checkpoint_of_something_else_is_left_alone() {
+    let desk = tempfile::tempdir().unwrap();
+    let state = desk.path().join("state");
+    let refused = |line: &str| {
+        let before = std::fs::read(&state).unwrap();
+        let out = command(desk.path(), line).output().unwrap();
+        let said = String::from_utf8_lossy(&out.stderr).into_owned();
+        assert_eq!(out.status.code(), Some(1), "{said}");
+        assert!(
+            said.contains("state") && said.contains("--checkpoint"),
+            "{said}"
+        );
+        assert!(std::fs::read(&state).unwrap() == before);
+        said
+    };
+    let line = format!("{RENDER} --spp 2 --checkpoint state -o out.exr");
+    std::fs::write(&state, "my picture").unwrap();
+    refused(&line);
+    run(
+        desk.path(),
+        &format!("{RENDER} --spp 2 -o part.safetensors"),
+    );
+    std::fs::rename(desk.path().join("part.safetensors"), &state).unwrap();
+    // The same samples with another look of what is behind the subject, and of another coat.
+    for other in ["--env-visible", "--env white", "--coat cow"] {
+        let said = refused(&format!("{line} {other}"));
+        assert!(said.contains("the scene"), "{said}");
+    }
+    run(desk.path(), &line);
+    assert!(!state.exists());
+}
+
+/// Where the checkpoint cannot be, the picture is not begun.
+#[test]
+fn a_checkpoint_that_cannot_be_written_is_refused_first() {
+    let desk = tempfile::tempdir().unwrap();
+    let line = format!("{RENDER} --spp 2 --checkpoint no/state -o out.exr");
+    let out = command(desk.path(), &line).output().unwrap();
+    assert!(!out.status.success());
+    assert!(String::from_utf8_lossy(&out.stderr).contains("no/state"));
+    assert!(!desk.path().join("out.exr").exists());
 }

@@ -37,8 +37,10 @@ pub(super) struct Args {
 /// Runs the command.
 pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     // Files of a picture say so; any other is taken for a bake's, whose reader knows what may be wrong.
-    if let Some(Ok(first)) = args.shards.first().map(|path| FilmSums::read(path)) {
-        return merge_pictures(args, first);
+    for path in args.shards.iter().take(1) {
+        if FilmSums::are_in(path)? {
+            return merge_pictures(args);
+        }
     }
     let extension = args.output.extension().and_then(|e| e.to_str());
     let to_sums = match extension {
@@ -73,14 +75,12 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     Ok(())
 }
 
-fn merge_pictures(args: &Args, first: FilmSums) -> Result<(), Failure> {
+fn merge_pictures(args: &Args) -> Result<(), Failure> {
     let format = output::format_of(&args.output)?;
     check_writable(&args.output)?;
-    let mut parts = vec![first];
-    for path in &args.shards[1..] {
-        parts.push(FilmSums::read(path)?);
-    }
-    let sums = FilmSums::merge(parts)?;
+    let read = |path: &PathBuf| Ok((path.clone(), FilmSums::read(path)?));
+    let parts = args.shards.iter().map(read);
+    let sums = FilmSums::merge(parts.collect::<Result<_, FilmSumsError>>()?)?;
     let origin = match Origin::of(&sums) {
         Some(origin) => origin,
         None if format == Format::Sums => return Ok(sums.write(&args.output)?),

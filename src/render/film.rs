@@ -22,6 +22,29 @@ pub struct Crop {
     pub height: u32,
 }
 
+impl Crop {
+    /// The full frame of a size.
+    pub fn whole([width, height]: [u32; 2]) -> Self {
+        Self {
+            x: 0,
+            y: 0,
+            width,
+            height,
+        }
+    }
+
+    /// Number of its pixels.
+    pub fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// Column and row in the full frame of its pixel `index`, rows from the top.
+    pub(super) fn pixel(&self, index: usize) -> (u32, u32) {
+        let index = index as u32;
+        (self.x + index % self.width, self.y + index / self.width)
+    }
+}
+
 /// Sums of one pixel, in integers: samples may be added in any order and by any number of programs, to
 /// the bit the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -213,8 +236,10 @@ pub struct Report {
     pub passes: u32,
     /// Whether all samples asked for were taken.
     pub complete: bool,
-    /// Time spent.
+    /// Time spent since the rendering was begun or gone on with.
     pub elapsed: Duration,
+    /// Rays traced in that time.
+    pub rays_in_elapsed: u64,
 }
 
 /// A rendered picture, or a crop of one.

@@ -145,12 +145,7 @@ impl RenderJob {
         {
             return Err(RenderError::Target { error });
         }
-        let crop = self.crop.unwrap_or(Crop {
-            x: 0,
-            y: 0,
-            width,
-            height,
-        });
+        let crop = self.crop.unwrap_or(Crop::whole(self.resolution));
         let inside = |from: u32, size: u32, limit: u32| {
             size > 0 && from.checked_add(size).is_some_and(|end| end <= limit)
         };

@@ -35,8 +35,7 @@ pub(super) struct FirstHit {
 pub(super) struct Sample {
     /// Radiance, backdrop included.
     pub(super) radiance: Rgb,
-    /// 1 where the subject was met, else 0.
-    pub(super) alpha: f32,
+    /// Where the subject was met.
     pub(super) first: Option<FirstHit>,
     /// Closest-hit and occlusion queries made.
     pub(super) rays: u32,
@@ -105,7 +104,6 @@ impl Integrator<'_> {
         }
         let light = self.trace(&scatter, None, &draws, &mut out);
         out.radiance = light;
-        out.alpha = 1.0;
         out.first = Some(self.describe(&hit, &scatter));
         out
     }

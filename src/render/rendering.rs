@@ -22,26 +22,22 @@ const DARK: f64 = 0.02;
 
 /// The pixels of one tile; only one thread touches it at a time.
 struct Tile {
-    x: u32,
-    y: u32,
-    width: u32,
+    extent: Crop,
     sums: Vec<PixelSums>,
     /// The next sample.
     next: u32,
 }
 
-impl Tile {
-    /// Relative error of the tile's luminance (see [`RenderJob::target_error`]).
-    fn error(&self) -> f64 {
-        let (mut mean, mut variance) = (0.0, 0.0);
-        for sums in &self.sums {
-            let (m, v) = sums.luminance();
-            mean += m;
-            variance += v;
-        }
-        let n = self.sums.len().max(1) as f64;
-        (variance / n).sqrt() / (mean / n).max(DARK)
+/// Relative error of a tile's luminance (see [`RenderJob::target_error`]).
+fn error(tile: &[PixelSums]) -> f64 {
+    let (mut mean, mut variance) = (0.0, 0.0);
+    for sums in tile {
+        let (m, v) = sums.luminance();
+        mean += m;
+        variance += v;
     }
+    let n = tile.len().max(1) as f64;
+    (variance / n).sqrt() / (mean / n).max(DARK)
 }
 
 /// A picture that is being made.
@@ -51,6 +47,8 @@ pub struct Rendering<'a> {
     integrator: Integrator<'a>,
     tiles: Vec<Tile>,
     counts: Counts,
+    /// Rays of the sums it went on from.
+    rays_before: u64,
     started: Instant,
 }
 
@@ -60,7 +58,6 @@ impl<'a> Rendering<'a> {
     /// # Errors
     /// Numbers that make no picture ([`RenderJob::check`]).
     pub fn new(job: &RenderJob, scene: &'a Scene) -> Result<Self, RenderError> {
-        job.check()?;
         Self::with(job, job.integrator(scene))
     }
 
@@ -72,6 +69,7 @@ impl<'a> Rendering<'a> {
             integrator,
             tiles: tiles_of(job, &crop),
             counts: Counts::default(),
+            rays_before: 0,
             started: Instant::now(),
         })
     }
@@ -92,13 +90,12 @@ impl<'a> Rendering<'a> {
         progress.advance(self.tiles.iter().map(done).sum());
         let stopped = AtomicBool::new(false);
         while let Some(from) = self.next_pass() {
-            let first = from == self.job.first;
+            let is_first = from == self.job.first;
             let to = self.end().min(from + pass_size(from - self.job.first));
             let (started, limit) = (self.started, self.job.time_limit);
             let late = || {
-                let over = limit.is_some_and(|limit| started.elapsed() >= limit);
                 let due = until.is_some_and(|until| Instant::now() >= until);
-                let late = cancel.is_cancelled() || due || (!first && over);
+                let late = cancel.is_cancelled() || due || (!is_first && is_over(started, limit));
                 late && {
                     stopped.store(true, Ordering::Relaxed);
                     true
@@ -108,12 +105,12 @@ impl<'a> Rendering<'a> {
                 break;
             }
             let integrator = &self.integrator;
-            let (job, end) = (&self.job, self.end());
+            let job = &self.job;
             let counts: Vec<Counts> = self
                 .tiles
                 .par_iter_mut()
                 .map(|tile| {
-                    if tile.next >= to || enough(job, end, tile) || late() {
+                    if tile.next >= to || enough(job, tile.next, &tile.sums) || late() {
                         return Counts::default();
                     }
                     let counts = trace(integrator, tile, to);
@@ -138,13 +135,13 @@ impl<'a> Rendering<'a> {
 
     /// Where the tile that is farthest behind goes on; `None` if all have enough.
     fn next_pass(&self) -> Option<u32> {
-        let open = |t: &&Tile| !enough(&self.job, self.end(), t);
+        let open = |t: &&Tile| !enough(&self.job, t.next, &t.sums);
         self.tiles.iter().filter(open).map(|t| t.next).min()
     }
 
-    /// Time since the rendering began.
-    pub fn spent(&self) -> Duration {
-        self.started.elapsed()
+    /// Whether the job's time limit has stopped it, or will before the next sample.
+    pub fn is_late(&self) -> bool {
+        is_over(self.started, self.job.time_limit) && self.next_pass() != Some(self.job.first)
     }
 
     /// The picture as it is now.
@@ -154,15 +151,16 @@ impl<'a> Rendering<'a> {
         Film {
             crop: self.crop,
             resolution: self.job.resolution,
-            pixels: assemble(&self.tiles, &self.crop),
+            pixels: assemble(
+                self.tiles.iter().map(|t| (t.extent, t.sums.as_slice())),
+                &self.crop,
+            ),
             report: Report {
-                samples: self.counts.samples,
-                rays: self.counts.rays,
-                dropped: self.counts.dropped,
-                capped: self.counts.capped,
                 passes: passes_in(least),
                 complete: self.next_pass().is_none(),
                 elapsed: self.started.elapsed(),
+                rays_in_elapsed: self.counts.rays - self.rays_before,
+                ..self.counts.report()
             },
         }
     }
@@ -200,14 +198,21 @@ impl<'a> Rendering<'a> {
             at += count;
         }
         self.counts = sums.header.counts;
+        self.rays_before = self.counts.rays;
         Ok(())
     }
 }
 
+fn is_over(started: Instant, limit: Option<Duration>) -> bool {
+    limit.is_some_and(|limit| started.elapsed() >= limit)
+}
+
 /// Whether a tile needs no more samples. A function of its sums alone.
-fn enough(job: &RenderJob, end: u32, tile: &Tile) -> bool {
-    let met = |target: f64| tile.next - job.first >= LEAST && tile.error() <= target;
-    tile.next >= end || job.target_error.is_some_and(met)
+///
+/// * `next`: its next sample.
+pub(super) fn enough(job: &RenderJob, next: u32, tile: &[PixelSums]) -> bool {
+    let met = |target: f64| next - job.first >= LEAST && error(tile) <= target;
+    next >= job.first + job.spp || job.target_error.is_some_and(met)
 }
 
 /// Samples of the pass after `taken`: doubling, so that every pass ends on a whole net of points.
@@ -227,15 +232,8 @@ fn passes_in(taken: u32) -> u32 {
 /// Tiles of a picture. Where they decide for themselves when to stop they are whole, whatever the crop, so
 /// that a crop shows what the full frame does.
 pub(super) fn extents(job: &RenderJob, crop: &Crop) -> Vec<Crop> {
-    let [width, height] = job.resolution;
-    let whole = Crop {
-        x: 0,
-        y: 0,
-        width,
-        height,
-    };
     let bounds = if job.target_error.is_some() {
-        whole
+        Crop::whole(job.resolution)
     } else {
         *crop
     };
@@ -263,10 +261,8 @@ fn tiles_of(job: &RenderJob, crop: &Crop) -> Vec<Tile> {
     extents(job, crop)
         .into_iter()
         .map(|extent| Tile {
-            x: extent.x,
-            y: extent.y,
-            width: extent.width,
-            sums: vec![PixelSums::default(); (extent.width * extent.height) as usize],
+            extent,
+            sums: vec![PixelSums::default(); extent.pixels()],
             next: job.first,
         })
         .collect()
@@ -275,10 +271,7 @@ fn tiles_of(job: &RenderJob, crop: &Crop) -> Vec<Tile> {
 fn trace(integrator: &Integrator<'_>, tile: &mut Tile, to: u32) -> Counts {
     let mut counts = Counts::default();
     for (i, sums) in tile.sums.iter_mut().enumerate() {
-        let (x, y) = (
-            tile.x + i as u32 % tile.width,
-            tile.y + i as u32 / tile.width,
-        );
+        let (x, y) = tile.extent.pixel(i);
         for index in tile.next..to {
             let sample = integrator.sample(x, y, index);
             counts.samples += 1;
@@ -291,32 +284,23 @@ fn trace(integrator: &Integrator<'_>, tile: &mut Tile, to: u32) -> Counts {
     counts
 }
 
-fn assemble(tiles: &[Tile], crop: &Crop) -> Vec<Pixel> {
-    let blank = Pixel::from(&PixelSums::default());
-    let mut pixels = vec![blank; crop.width as usize * crop.height as usize];
-    for tile in tiles {
-        place(&tile.sums, tile.x, tile.y, tile.width, crop, &mut pixels);
-    }
-    pixels
-}
-
-/// Puts the pixels of a tile, as far as they are in the crop, into a picture of it.
-pub(super) fn place(
-    sums: &[PixelSums],
-    x: u32,
-    y: u32,
-    width: u32,
+/// The picture of a crop, from the tiles that cover it.
+pub(super) fn assemble<'a>(
+    tiles: impl Iterator<Item = (Crop, &'a [PixelSums])>,
     crop: &Crop,
-    pixels: &mut [Pixel],
-) {
-    for (i, sums) in sums.iter().enumerate() {
-        let (x, y) = (x + i as u32 % width, y + i as u32 / width);
-        let inside = |at: u32, from: u32, size: u32| (from..from + size).contains(&at);
-        if inside(x, crop.x, crop.width) && inside(y, crop.y, crop.height) {
-            let (x, y) = ((x - crop.x) as usize, (y - crop.y) as usize);
-            pixels[y * crop.width as usize + x] = Pixel::from(sums);
+) -> Vec<Pixel> {
+    let mut pixels = vec![Pixel::from(&PixelSums::default()); crop.pixels()];
+    let inside = |at: u32, from: u32, size: u32| (from..from + size).contains(&at);
+    for (extent, sums) in tiles {
+        for (i, sums) in sums.iter().enumerate() {
+            let (x, y) = extent.pixel(i);
+            if inside(x, crop.x, crop.width) && inside(y, crop.y, crop.height) {
+                let (x, y) = ((x - crop.x) as usize, (y - crop.y) as usize);
+                pixels[y * crop.width as usize + x] = Pixel::from(sums);
+            }
         }
     }
+    pixels
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use super::*;
 use crate::color::Rgb;
 use crate::progress::Silent;
 use crate::scene::{Backdrop, Environment};
+use std::path::PathBuf;
 
 fn fur() -> Scene {
     let groom = ball(1_500, 10.0, 250.0);
@@ -46,6 +47,7 @@ fn ranges_of_samples_make_the_picture_of_one_run() {
         part.write(&path).unwrap();
         let read = FilmSums::read(&path).unwrap();
         assert_eq!(*part, read);
+        assert!(FilmSums::are_in(&path).unwrap());
         // A single bit off is noticed.
         let mut bytes = std::fs::read(&path).unwrap();
         let last = bytes.len() - 3;
@@ -55,17 +57,24 @@ fn ranges_of_samples_make_the_picture_of_one_run() {
             FilmSums::read(&path),
             Err(FilmSumsError::Damaged { .. })
         ));
-        read
+        assert!(FilmSums::are_in(&path).unwrap());
+        (path, read)
     });
     let merged = FilmSums::merge(read.collect()).unwrap();
     assert_eq!(merged, whole.sums("fur"));
     assert_eq!(merged.film().pixels, whole.film().pixels);
-    let gap = FilmSums::merge(vec![part(0, 5), part(23, 40)]);
-    assert!(matches!(gap, Err(FilmSumsError::Gap { end: 5, next: 23 })));
+    let named = |name: &str, part| (PathBuf::from(name), part);
+    let merge = |parts: Vec<_>| FilmSums::merge(parts).unwrap_err().to_string();
+    assert_eq!(
+        merge(vec![named("b", part(23, 40)), named("a", part(0, 5))]),
+        "b: samples 5 to 23 are missing or there twice"
+    );
     let mut other = part(5, 23);
     other.header.of = "feathers".to_owned();
-    let foreign = FilmSums::merge(vec![part(0, 5), other]);
-    assert!(matches!(foreign, Err(FilmSumsError::Foreign { .. })));
+    assert_eq!(
+        merge(vec![named("a", part(0, 5)), named("b", other)]),
+        "b: the sums are of another picture: the scene differs"
+    );
 }
 
 /// Stopped in the middle, saved, read and gone on with.
@@ -118,7 +127,7 @@ fn tiles_end_where_they_have_enough() {
         whole
             .tiles
             .iter()
-            .all(|t| t.error() <= target || t.next == 2_000)
+            .all(|t| error(&t.sums) <= target || t.next == 2_000)
     );
     counts.sort_unstable();
     assert!(
@@ -144,4 +153,70 @@ fn tiles_end_where_they_have_enough() {
         let (x, y) = (13 + i % 23, 9 + i / 23);
         assert_eq!(*pixel, whole.pixels[y * 50 + x]);
     }
+}
+
+/// A range that was stopped is a picture of its own, but no later one can follow it.
+#[test]
+fn one_unfinished_part_is_merged_as_it_is() {
+    let fur = fur();
+    let half = RenderJob { spp: 20, ..job() };
+    let mut sums = all_of(&half, &fur).sums("fur");
+    sums.header.spp = 30;
+    let name = |sums: &FilmSums| (PathBuf::from("a"), sums.clone());
+    let alone = FilmSums::merge(vec![name(&sums)]).unwrap();
+    assert_eq!(alone, sums);
+    assert!(!alone.film().report.complete);
+    let mut later = sums.clone();
+    later.header.first = 30;
+    let error = FilmSums::merge(vec![name(&sums), name(&later)]).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .starts_with("a: samples 0 to 30 are not complete"),
+        "{error}"
+    );
+}
+
+/// Tiles that stopped at the target are all there is to take.
+#[test]
+fn sums_that_met_their_target_are_complete() {
+    let fur = fur();
+    let job = RenderJob {
+        target_error: Some(0.3),
+        spp: 2_000,
+        ..job()
+    };
+    let whole = all_of(&job, &fur);
+    let sums = whole.sums("fur");
+    assert!(sums.header.next.iter().any(|&next| next < 2_000));
+    assert!(sums.film().report.complete && whole.film().report.complete);
+}
+
+#[test]
+fn a_time_limit_is_met_after_the_first_pass() {
+    let fur = fur();
+    let job = RenderJob {
+        time_limit: Some(Duration::ZERO),
+        ..job()
+    };
+    let mut rendering = Rendering::new(&job, &fur).unwrap();
+    assert!(!rendering.is_late());
+    assert!(!rendering.run(None, &Silent, &Cancel::default()));
+    assert!(rendering.is_late() && rendering.film().report.samples > 0);
+}
+
+/// The rate of a rendering that went on is that of its own rays.
+#[test]
+fn rays_of_the_time_before_do_not_count_twice() {
+    let fur = fur();
+    let half = RenderJob { spp: 20, ..job() };
+    let mut sums = all_of(&half, &fur).sums("fur");
+    let before = sums.film().report.rays;
+    sums.header.spp = 40;
+    let mut rendering = Rendering::new(&job(), &fur).unwrap();
+    rendering.resume(sums).unwrap();
+    assert!(rendering.run(None, &Silent, &Cancel::default()));
+    let report = rendering.film().report;
+    assert!(report.rays_in_elapsed > 0);
+    assert_eq!(report.rays, before + report.rays_in_elapsed);
 }

@@ -5,17 +5,22 @@
 //! [`Header`] as JSON, and `sha256`, the checksum of that text followed by the array.
 
 use super::film::{PixelSums, WORDS};
-use super::rendering::{extents, place};
-use super::{Crop, Film, Filter, Pixel, RenderJob, Report, Sampler};
+use super::rendering::{assemble, enough, extents};
+use super::{Crop, Film, Filter, RenderJob, Report, Sampler};
 use crate::blame::Blame;
+use crate::hex::hex;
 use crate::io::{AtomicFile, FileError, read_bounded};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
-use std::fmt::Write as _;
-use std::io::{BufWriter, Write};
+use std::fs::File;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
+/// Where the header says what the sums are of.
+const MARK: &str = "vair_film";
+/// Bytes at the start of a file that have the mark in them, if any: nothing long comes before it.
+const MARK_WITHIN: u64 = 4096;
 /// Raised when the meaning of a word changes.
 const VERSION: u32 = 1;
 
@@ -60,6 +65,14 @@ pub enum FilmSumsError {
         /// Next sample of the tile that is farthest behind.
         at: u32,
     },
+    /// What is wrong with one of several files.
+    #[error("{}: {source}", path.display())]
+    In {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: Box<FilmSumsError>,
+    },
     /// No file.
     #[error("there is nothing to merge")]
     Nothing,
@@ -70,6 +83,7 @@ impl FilmSumsError {
     pub fn blame(&self) -> Blame {
         match self {
             Self::File(error) => error.blame(),
+            Self::In { source, .. } => source.blame(),
             _ => Blame::Input,
         }
     }
@@ -91,6 +105,16 @@ impl Counts {
         self.dropped += other.dropped;
         self.capped += other.capped;
     }
+
+    pub(super) fn report(&self) -> Report {
+        Report {
+            samples: self.samples,
+            rays: self.rays,
+            dropped: self.dropped,
+            capped: self.capped,
+            ..Report::default()
+        }
+    }
 }
 
 /// What sums are of.
@@ -105,8 +129,8 @@ pub(super) struct Header {
     sampler: Sampler,
     filter: Filter,
     target_error: Option<f64>,
-    first: u32,
-    spp: u32,
+    pub(super) first: u32,
+    pub(super) spp: u32,
     /// The next sample of each tile.
     pub(super) next: Vec<u32>,
     pub(super) counts: Counts,
@@ -118,12 +142,7 @@ impl Header {
             version: VERSION,
             of: of.to_owned(),
             resolution: job.resolution,
-            crop: job.crop.unwrap_or(Crop {
-                x: 0,
-                y: 0,
-                width: job.resolution[0],
-                height: job.resolution[1],
-            }),
+            crop: job.crop.unwrap_or(Crop::whole(job.resolution)),
             seed: job.seed,
             sampler: job.sampler,
             filter: job.filter,
@@ -210,35 +229,49 @@ impl FilmSums {
         [self.header.first, self.header.first + self.header.spp]
     }
 
-    /// Puts finished ranges of samples together, whatever their order.
+    /// Puts finished ranges of samples together, whatever their order. One alone is taken as it is.
+    ///
+    /// * `parts`: each with its name.
     ///
     /// # Errors
-    /// Sums of different pictures, unfinished ones, gaps and overlaps.
-    pub fn merge(mut parts: Vec<Self>) -> Result<Self, FilmSumsError> {
-        parts.sort_by_key(|part| part.header.first);
+    /// By name: sums of different pictures, several of which one is unfinished, gaps and overlaps.
+    pub fn merge(mut parts: Vec<(PathBuf, Self)>) -> Result<Self, FilmSumsError> {
+        parts.sort_by_key(|(_, part)| part.header.first);
+        let in_file = |path: PathBuf| {
+            move |source| FilmSumsError::In {
+                path,
+                source: Box::new(source),
+            }
+        };
+        if parts.len() > 1 {
+            for (path, part) in &parts {
+                part.finished().map_err(in_file(path.clone()))?;
+            }
+        }
         let mut parts = parts.into_iter();
-        let mut all = parts.next().ok_or(FilmSumsError::Nothing)?;
-        all.finished()?;
-        for part in parts {
-            part.finished()?;
-            all.header.same_samples(&part.header)?;
-            let [_, end] = all.range();
-            if part.header.first != end {
-                return Err(FilmSumsError::Gap {
-                    end,
-                    next: part.header.first,
-                });
-            }
-            for (sums, later) in all.pixels.iter_mut().zip(&part.pixels) {
-                sums.append(later);
-            }
-            all.header.spp += part.header.spp;
-            all.header.next = part.header.next;
-            all.header.counts.add(&part.header.counts);
+        let (_, mut all) = parts.next().ok_or(FilmSumsError::Nothing)?;
+        for (path, part) in parts {
+            all.append(part).map_err(in_file(path))?;
         }
         Ok(all)
     }
 
+    fn append(&mut self, later: Self) -> Result<(), FilmSumsError> {
+        self.header.same_samples(&later.header)?;
+        let ([_, end], [next, _]) = (self.range(), later.range());
+        if next != end {
+            return Err(FilmSumsError::Gap { end, next });
+        }
+        for (sums, later) in self.pixels.iter_mut().zip(&later.pixels) {
+            sums.append(later);
+        }
+        self.header.spp += later.header.spp;
+        self.header.next = later.header.next;
+        self.header.counts.add(&later.header.counts);
+        Ok(())
+    }
+
+    /// Whether every tile has all samples of the range, so that later ones can follow.
     fn finished(&self) -> Result<(), FilmSumsError> {
         let [first, end] = self.range();
         match self.header.next.iter().copied().min() {
@@ -249,29 +282,23 @@ impl FilmSums {
 
     /// The picture.
     pub fn film(&self) -> Film {
-        let header = &self.header;
-        let blank = Pixel::from(&PixelSums::default());
-        let crop = header.crop;
-        let mut pixels = vec![blank; crop.width as usize * crop.height as usize];
-        let mut at = 0;
-        for tile in extents(&header.job(), &crop) {
-            let count = (tile.width * tile.height) as usize;
-            let sums = &self.pixels[at..at + count];
-            place(sums, tile.x, tile.y, tile.width, &crop, &mut pixels);
-            at += count;
-        }
+        let (header, job) = (&self.header, self.header.job());
+        let mut rest = self.pixels.as_slice();
+        let tiles = extents(&job, &header.crop).into_iter().map(|extent| {
+            let (sums, later) = rest.split_at(extent.pixels());
+            rest = later;
+            (extent, sums)
+        });
+        let tiles: Vec<_> = tiles.collect();
+        let done = |(next, (_, sums)): (&u32, &(Crop, &[PixelSums]))| enough(&job, *next, sums);
         Film {
-            crop,
+            crop: header.crop,
             resolution: header.resolution,
-            pixels,
             report: Report {
-                samples: header.counts.samples,
-                rays: header.counts.rays,
-                dropped: header.counts.dropped,
-                capped: header.counts.capped,
-                complete: self.finished().is_ok(),
-                ..Report::default()
+                complete: header.next.iter().zip(&tiles).all(done),
+                ..header.counts.report()
             },
+            pixels: assemble(tiles.into_iter(), &header.crop),
         }
     }
 
@@ -291,21 +318,34 @@ impl FilmSums {
             "pixels": {
                 "dtype": "U64", "shape": [self.pixels.len(), WORDS], "data_offsets": [0, size],
             },
-            "__metadata__": {"vair_film": text, "sha256": hex(&hasher.finalize())},
+            "__metadata__": {MARK: text, "sha256": hex(&hasher.finalize())},
         })
         .to_string();
         while !head.len().is_multiple_of(8) {
             head.push(' ');
         }
-        let mut out = BufWriter::with_capacity(1 << 20, AtomicFile::create(path)?);
+        let mut out = AtomicFile::create(path)?;
         out.write_all(&(head.len() as u64).to_le_bytes())
             .and_then(|()| out.write_all(head.as_bytes()))
             .map_err(fail)?;
         for sums in &self.pixels {
             out.write_all(&bytes_of(sums)).map_err(fail)?;
         }
-        let file = out.into_inner().map_err(|e| fail(e.into_error()))?;
-        file.commit()
+        out.commit()
+    }
+
+    /// Whether a file says that it holds the sums of a picture; damaged ones do so too.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn are_in(path: &Path) -> Result<bool, FileError> {
+        let fail = |e| FileError::new("read", path, e);
+        let mut head = Vec::new();
+        let file = File::open(path).map_err(fail)?;
+        file.take(MARK_WITHIN)
+            .read_to_end(&mut head)
+            .map_err(fail)?;
+        Ok(head.windows(MARK.len()).any(|part| part == MARK.as_bytes()))
     }
 
     /// Reads a file.
@@ -328,7 +368,7 @@ impl FilmSums {
         let (head, array) = rest.split_at_checked(length).ok_or_else(short)?;
         let head: Value = serde_json::from_slice(head).map_err(|e| format!("its header: {e}"))?;
         let metadata = &head["__metadata__"];
-        let text = metadata["vair_film"].as_str();
+        let text = metadata[MARK].as_str();
         let text = text.ok_or("its header says nothing of a picture")?;
         let mut hasher = Sha256::new_with_prefix(text.as_bytes());
         hasher.update(array);
@@ -343,7 +383,7 @@ impl FilmSums {
             ));
         }
         let tiles = header.check()?;
-        let count: usize = tiles.iter().map(|t| (t.width * t.height) as usize).sum();
+        let count: usize = tiles.iter().map(Crop::pixels).sum();
         let (words, left) = array.as_chunks::<{ 8 * WORDS }>();
         if words.len() != count || !left.is_empty() {
             return Err(format!("it has {} pixels, not {count}", words.len()));
@@ -365,11 +405,4 @@ fn bytes_of(sums: &PixelSums) -> [u8; 8 * WORDS] {
         bytes.copy_from_slice(&word.to_le_bytes());
     }
     bytes
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
 }

@@ -6,7 +6,7 @@ mod run;
 mod values;
 
 pub(super) use report::report;
-pub(super) use values::{parse_bytes, parse_count};
+pub(super) use values::{parse_bytes, parse_count, parse_share, parse_time};
 
 use super::{Console, Failure};
 use crate::bake::{Settings, Shard};
@@ -15,7 +15,6 @@ use crate::species::{HairClass, Species, Station};
 use crate::table::Undyed;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use values::{parse_share, parse_time};
 
 /// Arguments of `vair bake`.
 #[derive(Debug, clap::Args)]

@@ -19,7 +19,7 @@ pub(in crate::cli) fn parse_count(text: &str) -> Result<u64, String> {
 }
 
 /// `1%` and `0.01` are the same share.
-pub(super) fn parse_share(text: &str) -> Result<f64, String> {
+pub(in crate::cli) fn parse_share(text: &str) -> Result<f64, String> {
     let (number, scale) = match text.strip_suffix('%') {
         Some(number) => (number, 0.01),
         None => (text, 1.0),
@@ -33,7 +33,7 @@ pub(super) fn parse_share(text: &str) -> Result<f64, String> {
 }
 
 /// `30`, `30s`, `2.5m`, `1h` and `500ms` are times.
-pub(super) fn parse_time(text: &str) -> Result<Duration, String> {
+pub(in crate::cli) fn parse_time(text: &str) -> Result<Duration, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let seconds = match &text[digits.len()..] {
         "ms" => Some(0.001),

@@ -2,10 +2,11 @@
 
 use super::{output, parse};
 use crate::bsdf::ChiangParameters;
-use crate::cli::bake::parse_count;
+use crate::cli::bake::{parse_count, parse_share, parse_time};
 use crate::cli::skin::SkinArgs;
 use crate::render::Crop;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// The arguments.
 #[derive(Debug, clap::Args)]
@@ -46,23 +47,23 @@ pub(in crate::cli) struct Args {
     /// written to .safetensors files are put together by `vair merge`, to the bit what one run gives.
     #[arg(long, value_parser = parse::samples, value_name = "A..B", conflicts_with_all = ["spp", "target_error"])]
     pub(super) samples: Option<[u32; 2]>,
-    /// Ends tile by tile where the noise is below this many per cent of the tile's light; `--spp` is the
+    /// Ends tile by tile where the noise is below this share of the tile's light, such as 5%; `--spp` is the
     /// most samples then, and 4096 if it is not given.
-    #[arg(long, value_name = "PERCENT", value_parser = parse::percent)]
+    #[arg(long, value_name = "ERROR", value_parser = parse_share)]
     pub(super) target_error: Option<f64>,
     /// Saves all samples to this file now and then and when stopped, and goes on from it if it is there. It
     /// goes when the picture is done.
     #[arg(long, value_name = "FILE")]
     pub(super) checkpoint: Option<PathBuf>,
-    /// Seconds between two saves of the checkpoint.
-    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = parse::seconds)]
-    pub(super) checkpoint_every: f64,
+    /// Time between two saves of the checkpoint.
+    #[arg(long, value_name = "TIME", default_value = "30s", value_parser = parse_time)]
+    pub(super) checkpoint_every: Duration,
     /// Renders only a part of the frame, with the same pixels: x,y,width,height.
     #[arg(long, value_parser = parse::crop)]
     pub(super) crop: Option<Crop>,
-    /// Stops after so many seconds with the samples there are.
-    #[arg(long, value_name = "SECONDS")]
-    pub(super) time: Option<f64>,
+    /// Stops after this time with the samples there are, such as 90s or 5m.
+    #[arg(long, value_name = "TIME", value_parser = parse_time)]
+    pub(super) time: Option<Duration>,
     /// How directions are drawn; all give the same picture.
     #[arg(long, value_enum, default_value = "qsir")]
     pub(super) sampler: SamplerArg,

@@ -6,7 +6,8 @@ use crate::cli::{Console, Failure};
 use crate::io::FileError;
 use crate::render::{FilmSums, FilmSumsError, Rendering};
 use std::io::ErrorKind;
-use std::time::{Duration, Instant};
+use std::path::Path;
+use std::time::Instant;
 
 /// Renders to the end, or as far as it goes before something stops it, from the checkpoint on if there is
 /// one.
@@ -23,42 +24,48 @@ pub(super) fn run(
     };
     let of = origin.text();
     if path.exists() {
-        match FilmSums::read(path) {
-            Ok(sums) if sums.of() != of => {
-                return Err(FilmSumsError::Foreign { what: "the scene" }.into());
-            }
-            Ok(sums) => {
-                rendering.resume(sums)?;
-                console.say(format!("going on from {}", path.display()));
-            }
-            Err(FilmSumsError::Damaged { what, .. }) => {
-                console.say(format!(
-                    "warning: {} is damaged ({what}) and will be written over",
-                    path.display()
-                ));
-            }
-            Err(other) => return Err(other.into()),
-        }
+        go_on(rendering, path, &of).map_err(|error| {
+            let help = "delete it to begin anew, or give --checkpoint another name";
+            Failure::with_help(error.blame(), error, help)
+        })?;
+        console.say(format!("going on from {}", path.display()));
     }
-    let every = Duration::from_secs_f64(args.checkpoint_every);
-    let mut pause = every;
+    // A picture is worth more than its checkpoint: it goes on without.
+    let save = |rendering: &Rendering<'_>| {
+        let saved = rendering.sums(&of).write(path);
+        if let Err(error) = &saved {
+            console.say(format!("warning: no more checkpoints: {error}"));
+        }
+        saved.is_ok()
+    };
+    let mut pause = args.checkpoint_every;
     loop {
         let complete = rendering.run(Some(Instant::now() + pause), console, cancel);
-        if complete || cancel.is_cancelled() || late(args, rendering) {
+        if complete || cancel.is_cancelled() || rendering.is_late() {
             break;
         }
         let started = Instant::now();
-        rendering.sums(&of).write(path)?;
+        if !save(rendering) {
+            rendering.run(None, console, cancel);
+            return Ok(());
+        }
         // Large pictures take long to save: that may cost a twentieth of the time, no more.
-        pause = every.max(20 * started.elapsed());
+        pause = args.checkpoint_every.max(20 * started.elapsed());
     }
-    rendering.sums(&of).write(path)?;
+    save(rendering);
     Ok(())
 }
 
-fn late(args: &Args, rendering: &Rendering<'_>) -> bool {
-    let spent = rendering.spent();
-    args.time.is_some_and(|limit| spent.as_secs_f64() >= limit)
+fn go_on(rendering: &mut Rendering<'_>, path: &Path, of: &str) -> Result<(), FilmSumsError> {
+    let sums = FilmSums::read(path)?;
+    let same = match sums.of() == of {
+        true => rendering.resume(sums),
+        false => Err(FilmSumsError::Foreign { what: "the scene" }),
+    };
+    same.map_err(|source| FilmSumsError::In {
+        path: path.to_owned(),
+        source: Box::new(source),
+    })
 }
 
 /// Takes the checkpoint of a finished picture away.

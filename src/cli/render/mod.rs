@@ -12,7 +12,8 @@ pub(super) use args::Args;
 use super::{Console, Failure};
 use crate::blame::Blame;
 use crate::export::mitsuba::MitsubaScene;
-use crate::groom::{self, GroomSettings};
+use crate::groom::{self, Groom, GroomSettings};
+use crate::hex::hex;
 use crate::io::check_writable;
 use crate::render::{Film, Filter, RenderJob, Rendering, Sampler};
 use crate::scene::{Backdrop, Environment, Scene, SceneParts, Sun, View, load_environment};
@@ -20,10 +21,9 @@ use crate::skin::Skin;
 use crate::species;
 use args::{FilterArg, ModelArg, SamplerArg};
 use glam::Vec3;
-use output::Origin;
+use output::{Format, Origin};
 use sha2::{Digest, Sha256};
 use std::path::Path;
-use std::time::Duration;
 
 /// Runs the command.
 pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
@@ -49,7 +49,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         output::format_of(output)?;
         check_writable(output)?;
     }
-    if let Some(path) = &args.stats {
+    for path in args.stats.iter().chain(&args.checkpoint) {
         check_writable(path)?;
     }
     let given = args.table.iter().map(|path| material::given_table(path));
@@ -104,7 +104,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         stages.end("export");
         console.say(format!("Mitsuba scene in {}", folder.display()));
     }
-    let of = identity(args, &species, &scene);
+    let of = identity(args, &species, &groom, &scene);
     let mut rendering = Rendering::new(&job, &scene)?;
     checkpoint::run(args, &mut rendering, &of, console)?;
     let film = rendering.film();
@@ -137,13 +137,6 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
 }
 
 fn job(args: &Args) -> Result<RenderJob, Failure> {
-    let time_limit = match args.time {
-        Some(seconds) if !(0.0..1e9).contains(&seconds) => {
-            let message = format!("--time is {seconds}, must be 0 or more seconds");
-            return Err(Failure::new(Blame::Input, message));
-        }
-        limit => limit.map(Duration::from_secs_f64),
-    };
     let [first, end] = args.samples.unwrap_or_else(|| {
         let most = if args.target_error.is_some() {
             4096
@@ -171,12 +164,12 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
             FilterArg::Box => Filter::Box,
             FilterArg::Tent => Filter::Tent,
         },
-        time_limit,
+        time_limit: args.time,
     })
 }
 
-/// All that decides the samples besides the job.
-fn identity(args: &Args, species: &species::Species, scene: &Scene) -> Origin {
+/// All that decides the samples besides the job; of environments and tables from files their names.
+fn identity(args: &Args, species: &species::Species, groom: &Groom, scene: &Scene) -> Origin {
     let mut settings = format!(
         "skin {} env {} env-turn {} res {}x{} sampler {:?} strands {:?} bake-photons {}",
         args.on.skin,
@@ -195,19 +188,33 @@ fn identity(args: &Args, species: &species::Species, scene: &Scene) -> Origin {
         settings += &format!(" model {:?} {:?}", args.model, args.chiang);
     }
     settings += &format!(" tables {:?} ground {}", args.table, !args.no_ground);
+    if args.env_visible {
+        settings += " env-visible";
+    }
+    if args.coat.as_deref() == Some("none") {
+        settings += " coat none";
+    }
+    // Only what goes on later has to be known again, and large grooms take a while to hash.
+    let is_kept = args.checkpoint.is_some()
+        || (args.output.iter()).any(|path| matches!(output::format_of(path), Ok(Format::Sums)));
     Origin {
         species: species.id.clone(),
         species_text: species.text.clone(),
         settings,
         seed: args.seed,
         view: format!("{:?}", scene.view),
-        geometry: fingerprint(scene),
+        geometry: if is_kept {
+            fingerprint(groom, scene)
+        } else {
+            String::new()
+        },
     }
 }
 
-/// Hash of everything that rays can meet.
-fn fingerprint(scene: &Scene) -> String {
+/// Hash of everything that rays can meet, and of the parts of the coat that it belongs to.
+fn fingerprint(groom: &Groom, scene: &Scene) -> String {
     let mut hasher = Sha256::new();
+    hasher.update(&groom.coat);
     for (_, joint) in scene.strands.joints() {
         for x in joint.to_array() {
             hasher.update(x.to_le_bytes());
@@ -222,8 +229,7 @@ fn fingerprint(scene: &Scene) -> String {
             hasher.update(x.to_le_bytes());
         }
     }
-    let hash = hasher.finalize();
-    hash.iter().map(|byte| format!("{byte:02x}")).collect()
+    hex(&hasher.finalize())
 }
 
 fn environment(args: &Args, view: &View) -> Result<Environment, Failure> {
@@ -264,7 +270,7 @@ fn report(film: &Film, console: &Console) {
         "{:.1} M samples, {:.1} M rays in {seconds:.1} s ({:.2} M rays/s), noise {:.2} %",
         report.samples as f64 / 1e6,
         report.rays as f64 / 1e6,
-        report.rays as f64 / 1e6 / seconds.max(1e-9),
+        report.rays_in_elapsed as f64 / 1e6 / seconds.max(1e-9),
         100.0 * film.noise(),
     ));
     if report.dropped > 0 || report.capped > 0 {

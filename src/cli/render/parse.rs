@@ -36,22 +36,6 @@ pub(super) fn samples(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// A percentage above 0, as a share.
-pub(super) fn percent(text: &str) -> Result<f64, String> {
-    let number = text.trim().trim_end_matches('%').parse::<f64>().ok();
-    let share = number.filter(|n| (1e-3..=100.0).contains(n));
-    share
-        .map(|n| n / 100.0)
-        .ok_or_else(|| format!("`{text}` is not a percentage of 0.001 to 100"))
-}
-
-/// Seconds, 0 or more.
-pub(super) fn seconds(text: &str) -> Result<f64, String> {
-    let number = text.trim().parse::<f64>().ok();
-    let number = number.filter(|n| (0.0..1e9).contains(n));
-    number.ok_or_else(|| format!("`{text}` is not a number of seconds"))
-}
-
 pub(super) fn pair(text: &str) -> Result<[f32; 2], String> {
     let pair = text.split_once(',');
     let pair = pair.and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
