@@ -151,6 +151,7 @@ mod tests {
             crop,
             resolution: [width, height],
             pixels,
+            mattes: None,
             report: Report::default(),
         }
     }

@@ -1,13 +1,14 @@
 //! Rendered pictures as files.
 
+use super::cryptomatte::Cryptomatte;
 use super::view::ViewTransform;
 use super::write_png;
-use crate::io::{AtomicFile, FileError};
+use crate::io::{AtomicFile, FileError, sort_exr_attributes};
 use crate::render::{Film, Pixel};
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image,
-    ImageAttributes, IntegerBounds, Layer, LayerAttributes, LineOrder, Text, Vec2, WritableImage,
-    f16,
+    ImageAttributes, IntegerBounds, Layer, LayerAttributes, LineOrder, SmallVec, Text, Vec2,
+    WritableImage, f16,
 };
 use std::io::{self, Write};
 use std::path::Path;
@@ -15,8 +16,7 @@ use std::path::Path;
 /// Where a picture comes from: pairs of names and texts.
 pub type Provenance<'a> = [(&'a str, &'a str)];
 
-/// Name of the EXR attribute that holds the provenance as a JSON object. One attribute, because the
-/// order of several would change from run to run.
+/// Name of the EXR attribute that holds the provenance as a JSON object.
 pub const PROVENANCE_ATTRIBUTE: &str = "vair:provenance";
 
 /// Writes an 8-bit sRGB PNG of the beauty pass, provenance in text chunks.
@@ -36,7 +36,8 @@ pub fn write_film_png(
 
 /// Writes an EXR with all passes: `R G B A`, `Z` (millimeters from the camera), `albedo.RGB`,
 /// `normal.XYZ`, `tangent.XYZ` (world, the mean over the hits of a pixel), `strand.id` (the stable id,
-/// 4294967295 for none), `root.UV`, `samples` and `variance.Y` (of the mean luminance).
+/// 4294967295 for none), `root.UV`, `samples` and `variance.Y` (of the mean luminance); of a film with mattes
+/// the Cryptomatte layers `CryptoClass00` and `CryptoZone00` on.
 ///
 /// The data window is the crop, the display window the full frame. Same film, same bytes.
 pub fn write_film_exr(
@@ -52,8 +53,10 @@ pub fn write_film_exr(
             let reason = io::Error::new(io::ErrorKind::InvalidInput, e.to_string());
             FileError::new("write", path, reason)
         })?;
+    let mut bytes = bytes.into_inner();
+    sort_exr_attributes(&mut bytes);
     let mut file = AtomicFile::create(path)?;
-    file.write_all(bytes.get_ref())
+    file.write_all(&bytes)
         .map_err(|e| FileError::new("write", path, e))?;
     file.commit()
 }
@@ -74,6 +77,15 @@ fn encode(film: &Film, provenance: &Provenance<'_>) -> Image<Layer<AnyChannels<F
         Text::new_or_panic(PROVENANCE_ATTRIBUTE),
         AttributeValue::Text(Text::from(json.as_str())),
     );
+    let mut channels = channels(film);
+    if let Some(mattes) = &film.mattes {
+        for set in Cryptomatte::of(mattes) {
+            let attributes = set.attributes().into_iter();
+            let text = |text: String| AttributeValue::Text(Text::from(text.as_str()));
+            (layer.other).extend(attributes.map(|(name, value)| (name, text(value))));
+            channels.extend(set.channels(film, mattes));
+        }
+    }
     let encoding = Encoding {
         compression: Compression::ZIP16,
         line_order: LineOrder::Increasing,
@@ -86,42 +98,40 @@ fn encode(film: &Film, provenance: &Provenance<'_>) -> Image<Layer<AnyChannels<F
     ));
     Image {
         attributes: image,
-        layer_data: Layer::new(size, layer, encoding, channels(film)),
+        layer_data: Layer::new(size, layer, encoding, AnyChannels::sort(channels)),
     }
 }
 
-fn channels(film: &Film) -> AnyChannels<FlatSamples> {
+fn channels(film: &Film) -> SmallVec<[AnyChannel<FlatSamples>; 4]> {
     let each = |name: &str, samples| AnyChannel::new(name, samples);
     let float = |get: fn(&Pixel) -> f32| FlatSamples::F32(film.pixels.iter().map(get).collect());
     let half = |get: fn(&Pixel) -> f32| {
         FlatSamples::F16(film.pixels.iter().map(|p| f16::from_f32(get(p))).collect())
     };
     let whole = |get: fn(&Pixel) -> u32| FlatSamples::U32(film.pixels.iter().map(get).collect());
-    AnyChannels::sort(
-        [
-            each("R", float(|p| p.radiance.x)),
-            each("G", float(|p| p.radiance.y)),
-            each("B", float(|p| p.radiance.z)),
-            each("A", float(|p| p.alpha)),
-            each("Z", float(|p| p.depth)),
-            each("albedo.R", half(|p| p.albedo.x)),
-            each("albedo.G", half(|p| p.albedo.y)),
-            each("albedo.B", half(|p| p.albedo.z)),
-            each("normal.X", half(|p| p.normal.x)),
-            each("normal.Y", half(|p| p.normal.y)),
-            each("normal.Z", half(|p| p.normal.z)),
-            each("tangent.X", half(|p| p.tangent.x)),
-            each("tangent.Y", half(|p| p.tangent.y)),
-            each("tangent.Z", half(|p| p.tangent.z)),
-            each("strand.id", whole(|p| p.strand)),
-            each("root.U", float(|p| p.root_uv.x)),
-            each("root.V", float(|p| p.root_uv.y)),
-            each("samples", whole(|p| p.samples)),
-            each("variance.Y", float(|p| p.variance)),
-        ]
-        .into_iter()
-        .collect(),
-    )
+    [
+        each("R", float(|p| p.radiance.x)),
+        each("G", float(|p| p.radiance.y)),
+        each("B", float(|p| p.radiance.z)),
+        each("A", float(|p| p.alpha)),
+        each("Z", float(|p| p.depth)),
+        each("albedo.R", half(|p| p.albedo.x)),
+        each("albedo.G", half(|p| p.albedo.y)),
+        each("albedo.B", half(|p| p.albedo.z)),
+        each("normal.X", half(|p| p.normal.x)),
+        each("normal.Y", half(|p| p.normal.y)),
+        each("normal.Z", half(|p| p.normal.z)),
+        each("tangent.X", half(|p| p.tangent.x)),
+        each("tangent.Y", half(|p| p.tangent.y)),
+        each("tangent.Z", half(|p| p.tangent.z)),
+        each("strand.id", whole(|p| p.strand)),
+        each("root.U", float(|p| p.root_uv.x)),
+        each("root.V", float(|p| p.root_uv.y)),
+        each("samples", whole(|p| p.samples)),
+        each("variance.Y", float(|p| p.variance)),
+    ]
+    .into_iter()
+    .collect()
 }
 
 #[cfg(test)]
@@ -152,6 +162,7 @@ mod tests {
             },
             resolution: [20, 10],
             pixels: (0..6).map(pixel).collect(),
+            mattes: None,
             report: Report::default(),
         }
     }

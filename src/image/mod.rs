@@ -1,6 +1,7 @@
 //! Pictures: rendered films as EXR and PNG, and a small canvas for plots and labels.
 
 mod canvas;
+mod cryptomatte;
 mod denoise;
 mod film;
 mod palette;

@@ -1,5 +1,6 @@
 //! What a rendering gathers: exact sums per pixel.
 
+use super::mattes::Mattes;
 use super::path::Sample;
 use crate::color::{Rgb, luminance};
 use glam::{Vec2, Vec3};
@@ -42,6 +43,17 @@ impl Crop {
     pub(super) fn pixel(&self, index: usize) -> (u32, u32) {
         let index = index as u32;
         (self.x + index % self.width, self.y + index / self.width)
+    }
+
+    /// Indices of the pixels that are in another crop too, here and there.
+    pub(super) fn shared(self, other: &Self) -> impl Iterator<Item = (usize, usize)> {
+        let other = *other;
+        (0..self.pixels()).filter_map(move |index| {
+            let (x, y) = self.pixel(index);
+            let (x, y) = (x.checked_sub(other.x)?, y.checked_sub(other.y)?);
+            let is_inside = x < other.width && y < other.height;
+            is_inside.then(|| (index, y as usize * other.width as usize + x as usize))
+        })
     }
 }
 
@@ -251,6 +263,8 @@ pub struct Film {
     pub resolution: [u32; 2],
     /// Pixels of the crop, rows from the top.
     pub pixels: Vec<Pixel>,
+    /// What the samples of each pixel saw, if that was asked for.
+    pub mattes: Option<Mattes>,
     /// What happened.
     pub report: Report,
 }

@@ -3,6 +3,7 @@
 mod draws;
 mod film;
 mod filter;
+mod mattes;
 mod path;
 mod rendering;
 mod resample;
@@ -11,6 +12,7 @@ mod sums;
 
 pub use film::{Crop, Film, NO_STRAND, Pixel, Report};
 pub use filter::{Filter, GAUSSIAN_SIGMA};
+pub use mattes::{MatteNames, Mattes};
 pub use rendering::Rendering;
 pub use sums::{FilmSums, FilmSumsError};
 
@@ -65,6 +67,8 @@ pub struct RenderJob {
     pub sampler: Sampler,
     /// How samples spread over and around their pixel.
     pub filter: Filter,
+    /// Whether samples are also counted by what they saw.
+    pub mattes: bool,
     /// Stop after this time with the samples there are; the first pass is always finished.
     pub time_limit: Option<Duration>,
 }
@@ -80,6 +84,7 @@ impl Default for RenderJob {
             seed: 0,
             sampler: Sampler::Qsir,
             filter: Filter::Gaussian,
+            mattes: false,
             time_limit: None,
         }
     }

@@ -1,6 +1,7 @@
 //! The path integrator: one sample of one pixel, a pure function of (scene, seed, pixel, index).
 
 use super::draws::{Draws, Purpose};
+use super::mattes::Seen;
 use super::resample::{Plan, Target, resample};
 use super::scatter::{Direction, Scatter};
 use super::{Filter, Sampler};
@@ -37,6 +38,8 @@ pub(super) struct Sample {
     pub(super) radiance: Rgb,
     /// Where the subject was met.
     pub(super) first: Option<FirstHit>,
+    /// What was met.
+    pub(super) seen: Option<Seen>,
     /// Closest-hit and occlusion queries made.
     pub(super) rays: u32,
     /// Whether the far cap cut the path.
@@ -90,6 +93,14 @@ impl Integrator<'_> {
             out.radiance = backdrop();
             return out;
         };
+        out.seen = Some(match &hit {
+            Hit::Strand(hit) => Seen::Strand {
+                class: hit.class,
+                zone: hit.coat,
+            },
+            Hit::Surface(_) => Seen::Skin,
+            Hit::Ground(_) => Seen::Ground,
+        });
         let scatter = Scatter::new(self.scene, &ray, &hit, true, u[2]);
         if let (Hit::Ground(t), Some(ground)) = (&hit, &self.scene.ground) {
             let share = ground.shadow_share(ray.origin + *t * ray.dir);

@@ -1,6 +1,7 @@
 //! A rendering in progress: tiles that take samples in passes, and can be saved between any two of them.
 
 use super::film::PixelSums;
+use super::mattes::{MatteNames, Mattes};
 use super::path::Integrator;
 use super::sums::{Counts, Header};
 use super::{Crop, Film, FilmSums, FilmSumsError, Pixel, RenderError, RenderJob, Report};
@@ -24,6 +25,8 @@ const DARK: f64 = 0.02;
 struct Tile {
     extent: Crop,
     sums: Vec<PixelSums>,
+    /// Counts of what each pixel's samples saw; empty if nobody asks.
+    mattes: Vec<u32>,
     /// The next sample.
     next: u32,
 }
@@ -45,6 +48,8 @@ pub struct Rendering<'a> {
     job: RenderJob,
     crop: Crop,
     integrator: Integrator<'a>,
+    /// What samples are counted by, if they are.
+    names: Option<MatteNames>,
     tiles: Vec<Tile>,
     counts: Counts,
     /// Rays of the sums it went on from.
@@ -63,11 +68,17 @@ impl<'a> Rendering<'a> {
 
     pub(super) fn with(job: &RenderJob, integrator: Integrator<'a>) -> Result<Self, RenderError> {
         let crop = job.check()?;
+        let scene = integrator.scene;
+        let names = job.mattes.then(|| MatteNames {
+            classes: scene.classes.clone(),
+            zones: scene.zones.clone(),
+        });
         Ok(Self {
             job: job.clone(),
             crop,
             integrator,
-            tiles: tiles_of(job, &crop),
+            tiles: tiles_of(job, &crop, names.as_ref()),
+            names,
             counts: Counts::default(),
             rays_before: 0,
             started: Instant::now(),
@@ -104,7 +115,7 @@ impl<'a> Rendering<'a> {
             if late() {
                 break;
             }
-            let integrator = &self.integrator;
+            let (integrator, names) = (&self.integrator, self.names.as_ref());
             let job = &self.job;
             let counts: Vec<Counts> = self
                 .tiles
@@ -113,7 +124,7 @@ impl<'a> Rendering<'a> {
                     if tile.next >= to || enough(job, tile.next, &tile.sums) || late() {
                         return Counts::default();
                     }
-                    let counts = trace(integrator, tile, to);
+                    let counts = trace(integrator, names, tile, to);
                     progress.advance(counts.samples);
                     counts
                 })
@@ -155,6 +166,10 @@ impl<'a> Rendering<'a> {
                 self.tiles.iter().map(|t| (t.extent, t.sums.as_slice())),
                 &self.crop,
             ),
+            mattes: self.names.as_ref().map(|names| {
+                let tiles = self.tiles.iter().map(|t| (t.extent, t.mattes.as_slice()));
+                Mattes::assemble(names, tiles, &self.crop)
+            }),
             report: Report {
                 passes: passes_in(least),
                 complete: self.next_pass().is_none(),
@@ -174,11 +189,15 @@ impl<'a> Rendering<'a> {
             pixels: (self.tiles.iter())
                 .flat_map(|tile| tile.sums.iter().copied())
                 .collect(),
+            mattes: (self.tiles.iter())
+                .flat_map(|tile| tile.mattes.iter().copied())
+                .collect(),
         }
     }
 
     fn header(&self, of: &str) -> Header {
         let mut header = Header::new(of, &self.job);
+        header.mattes.clone_from(&self.names);
         header.next = self.tiles.iter().map(|t| t.next).collect();
         header.counts = self.counts;
         header
@@ -190,12 +209,15 @@ impl<'a> Rendering<'a> {
     /// Sums of another picture; nothing has changed then.
     pub fn resume(&mut self, sums: FilmSums) -> Result<(), FilmSumsError> {
         sums.header.same_picture(&self.header(&sums.header.of))?;
-        let mut at = 0;
+        let (mut at, mut rest) = (0, sums.mattes.as_slice());
         for (tile, next) in self.tiles.iter_mut().zip(&sums.header.next) {
             let count = tile.sums.len();
             tile.sums.copy_from_slice(&sums.pixels[at..at + count]);
+            let (mattes, later) = rest.split_at(tile.mattes.len());
+            tile.mattes.copy_from_slice(mattes);
             tile.next = *next;
             at += count;
+            rest = later;
         }
         self.counts = sums.header.counts;
         self.rays_before = self.counts.rays;
@@ -257,18 +279,25 @@ pub(super) fn extents(job: &RenderJob, crop: &Crop) -> Vec<Crop> {
     tiles
 }
 
-fn tiles_of(job: &RenderJob, crop: &Crop) -> Vec<Tile> {
+fn tiles_of(job: &RenderJob, crop: &Crop, names: Option<&MatteNames>) -> Vec<Tile> {
+    let columns = names.map_or(0, MatteNames::columns);
     extents(job, crop)
         .into_iter()
         .map(|extent| Tile {
             extent,
             sums: vec![PixelSums::default(); extent.pixels()],
+            mattes: vec![0; columns * extent.pixels()],
             next: job.first,
         })
         .collect()
 }
 
-fn trace(integrator: &Integrator<'_>, tile: &mut Tile, to: u32) -> Counts {
+fn trace(
+    integrator: &Integrator<'_>,
+    names: Option<&MatteNames>,
+    tile: &mut Tile,
+    to: u32,
+) -> Counts {
     let mut counts = Counts::default();
     for (i, sums) in tile.sums.iter_mut().enumerate() {
         let (x, y) = tile.extent.pixel(i);
@@ -277,7 +306,12 @@ fn trace(integrator: &Integrator<'_>, tile: &mut Tile, to: u32) -> Counts {
             counts.samples += 1;
             counts.rays += u64::from(sample.rays);
             counts.capped += u64::from(sample.capped);
-            counts.dropped += u64::from(!sums.add(&sample));
+            let kept = sums.add(&sample);
+            counts.dropped += u64::from(!kept);
+            if let (true, Some(names), Some(seen)) = (kept, names, sample.seen) {
+                let columns = names.columns();
+                names.count(seen, &mut tile.mattes[i * columns..(i + 1) * columns]);
+            }
         }
     }
     tile.next = to;
@@ -290,14 +324,9 @@ pub(super) fn assemble<'a>(
     crop: &Crop,
 ) -> Vec<Pixel> {
     let mut pixels = vec![Pixel::from(&PixelSums::default()); crop.pixels()];
-    let inside = |at: u32, from: u32, size: u32| (from..from + size).contains(&at);
     for (extent, sums) in tiles {
-        for (i, sums) in sums.iter().enumerate() {
-            let (x, y) = extent.pixel(i);
-            if inside(x, crop.x, crop.width) && inside(y, crop.y, crop.height) {
-                let (x, y) = ((x - crop.x) as usize, (y - crop.y) as usize);
-                pixels[y * crop.width as usize + x] = Pixel::from(sums);
-            }
+        for (from, to) in extent.shared(crop) {
+            pixels[to] = Pixel::from(&sums[from]);
         }
     }
     pixels

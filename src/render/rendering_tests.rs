@@ -1,15 +1,29 @@
-use super::super::tests::{ball, scene};
+use super::super::tests::ball;
 use super::super::{FilmSumsError, Sampler};
 use super::*;
+use crate::bsdf::HairMaterial;
 use crate::color::Rgb;
 use crate::progress::Silent;
-use crate::scene::{Backdrop, Environment};
+use crate::scene::{Backdrop, Environment, SceneParts, View};
 use std::path::PathBuf;
 
+/// Of two hair classes and two zones.
 fn fur() -> Scene {
-    let groom = ball(1_500, 10.0, 250.0);
+    let mut groom = ball(1_500, 10.0, 250.0);
+    groom.classes.push("under".into());
+    groom.class = (0..1_500).map(|i| u8::from(i % 3 == 0)).collect();
+    groom.coat = (0..1_500).map(|i| u8::from(i < 500)).collect();
     let light = Environment::studio();
-    scene(&groom, Rgb::new(0.8, 0.6, 0.3), light, Backdrop::default())
+    Scene::build(SceneParts {
+        groom: &groom,
+        materials: vec![HairMaterial::Isotropic(Rgb::new(0.8, 0.6, 0.3)); 2],
+        skin: None,
+        environment: light,
+        backdrop: Backdrop::default(),
+        ground: Some(0.5),
+        view: View::default(),
+    })
+    .unwrap()
 }
 
 fn job() -> RenderJob {
@@ -18,6 +32,7 @@ fn job() -> RenderJob {
         spp: 40,
         seed: 3,
         sampler: Sampler::Mis,
+        mattes: true,
         ..RenderJob::default()
     }
 }
@@ -63,6 +78,7 @@ fn ranges_of_samples_make_the_picture_of_one_run() {
     let merged = FilmSums::merge(read.collect()).unwrap();
     assert_eq!(merged, whole.sums("fur"));
     assert_eq!(merged.film().pixels, whole.film().pixels);
+    assert_eq!(merged.film().mattes, whole.film().mattes);
     let named = |name: &str, part| (PathBuf::from(name), part);
     let merge = |parts: Vec<_>| FilmSums::merge(parts).unwrap_err().to_string();
     assert_eq!(
@@ -74,6 +90,12 @@ fn ranges_of_samples_make_the_picture_of_one_run() {
     assert_eq!(
         merge(vec![named("a", part(0, 5)), named("b", other)]),
         "b: the sums are of another picture: the scene differs"
+    );
+    let mut other = part(5, 23);
+    other.header.mattes = None;
+    assert_eq!(
+        merge(vec![named("a", part(0, 5)), named("b", other)]),
+        "b: the sums are of another picture: what mattes there are differs"
     );
 }
 
@@ -101,6 +123,7 @@ fn a_stopped_rendering_goes_on_to_the_same_picture() {
         }
         assert!(rounds > 2, "{rounds}");
         assert_eq!(rendering.film().pixels, whole.film().pixels);
+        assert_eq!(rendering.film().mattes, whole.film().mattes);
         assert_eq!(rendering.film().report.samples, whole.film().report.samples);
         let other = RenderJob { seed: 4, ..job };
         let mut other = Rendering::new(&other, &fur).unwrap();
@@ -152,6 +175,8 @@ fn tiles_end_where_they_have_enough() {
     for (i, pixel) in part.pixels.iter().enumerate() {
         let (x, y) = (13 + i % 23, 9 + i / 23);
         assert_eq!(*pixel, whole.pixels[y * 50 + x]);
+        let mattes = |film: &Film, at| film.mattes.as_ref().map(|m| m.of_pixel(at).to_vec());
+        assert_eq!(mattes(&part, i), mattes(&whole, y * 50 + x));
     }
 }
 
@@ -219,4 +244,40 @@ fn rays_of_the_time_before_do_not_count_twice() {
     let report = rendering.film().report;
     assert!(report.rays_in_elapsed > 0);
     assert_eq!(report.rays, before + report.rays_in_elapsed);
+}
+
+/// Every sample that meets strands counts for one class and one zone, and where nobody asks nothing is counted.
+#[test]
+fn what_samples_see_is_counted_by_name() {
+    let fur = fur();
+    let film = all_of(&job(), &fur).film();
+    let mattes = film.mattes.as_ref().unwrap();
+    let sum = |names: Vec<(&str, usize)>, pixel| {
+        let shown = names.iter().filter(|(name, _)| *name != "ground");
+        shown
+            .map(|(_, at)| mattes.of_pixel(pixel)[*at])
+            .sum::<u32>()
+    };
+    let mut total = std::collections::BTreeMap::new();
+    for (i, pixel) in film.pixels.iter().enumerate() {
+        let hits = (pixel.alpha * pixel.samples as f32).round() as u32;
+        assert_eq!(sum(mattes.classes(), i), hits);
+        assert_eq!(sum(mattes.zones(), i), hits);
+        for (name, at) in mattes.classes().into_iter().chain(mattes.zones()) {
+            *total.entry(name).or_insert(0) += mattes.of_pixel(i)[at];
+        }
+    }
+    let names: Vec<&str> = total.keys().copied().collect();
+    assert_eq!(
+        names,
+        ["ground", "guard", "skin", "under", "zone 0", "zone 1"]
+    );
+    assert!(total["guard"] > total["under"] && total["under"] > 0 && total["ground"] > 0);
+    assert!(total["zone 0"] > 0 && total["zone 1"] > 0 && total["skin"] == 0);
+    let plain = RenderJob {
+        mattes: false,
+        ..job()
+    };
+    let plain = all_of(&plain, &fur).film();
+    assert_eq!((plain.mattes, plain.pixels), (None, film.pixels));
 }

@@ -1,10 +1,12 @@
 //! Exact sums of some samples of a picture, as files: checkpoints, and parts made apart.
 //!
-//! A file is safetensors: the length of the header (u64, little-endian), the header (JSON), one array
-//! `pixels` of 64-bit words, pixel by pixel, tile by tile. The header's `__metadata__` has `vair_film`, the
-//! [`Header`] as JSON, and `sha256`, the checksum of that text followed by the array.
+//! A file is safetensors: the length of the header (u64, little-endian), the header (JSON), an array
+//! `pixels` of 64-bit words, pixel by pixel, tile by tile, and for mattes one of counts, `mattes`. The header's
+//! `__metadata__` has `vair_film`, the [`Header`] as JSON, and `sha256`, the checksum of that text followed by
+//! the arrays.
 
 use super::film::{PixelSums, WORDS};
+use super::mattes::{MatteNames, Mattes};
 use super::rendering::{assemble, enough, extents};
 use super::{Crop, Film, Filter, RenderJob, Report, Sampler};
 use crate::blame::Blame;
@@ -129,6 +131,9 @@ pub(super) struct Header {
     sampler: Sampler,
     filter: Filter,
     target_error: Option<f64>,
+    /// What samples are counted by, if they are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) mattes: Option<MatteNames>,
     pub(super) first: u32,
     pub(super) spp: u32,
     /// The next sample of each tile.
@@ -147,6 +152,7 @@ impl Header {
             sampler: job.sampler,
             filter: job.filter,
             target_error: job.target_error,
+            mattes: None,
             first: job.first,
             spp: job.spp,
             next: Vec::new(),
@@ -164,6 +170,7 @@ impl Header {
             seed: self.seed,
             sampler: self.sampler,
             filter: self.filter,
+            mattes: self.mattes.is_some(),
             time_limit: None,
         }
     }
@@ -178,6 +185,7 @@ impl Header {
             (self.sampler == other.sampler, "the sampler"),
             (self.filter == other.filter, "the pixel filter"),
             (self.target_error == other.target_error, "the target error"),
+            (self.mattes == other.mattes, "what mattes there are"),
         ];
         match same.into_iter().find(|(same, _)| !same) {
             Some((_, what)) => Err(FilmSumsError::Foreign { what }),
@@ -216,6 +224,8 @@ pub struct FilmSums {
     pub(super) header: Header,
     /// Tile by tile.
     pub(super) pixels: Vec<PixelSums>,
+    /// Counts of what each pixel's samples saw; empty if they were not taken.
+    pub(super) mattes: Vec<u32>,
 }
 
 impl FilmSums {
@@ -265,6 +275,9 @@ impl FilmSums {
         for (sums, later) in self.pixels.iter_mut().zip(&later.pixels) {
             sums.append(later);
         }
+        for (count, later) in self.mattes.iter_mut().zip(&later.mattes) {
+            *count += later;
+        }
         self.header.spp += later.header.spp;
         self.header.next = later.header.next;
         self.header.counts.add(&later.header.counts);
@@ -283,13 +296,8 @@ impl FilmSums {
     /// The picture.
     pub fn film(&self) -> Film {
         let (header, job) = (&self.header, self.header.job());
-        let mut rest = self.pixels.as_slice();
-        let tiles = extents(&job, &header.crop).into_iter().map(|extent| {
-            let (sums, later) = rest.split_at(extent.pixels());
-            rest = later;
-            (extent, sums)
-        });
-        let tiles: Vec<_> = tiles.collect();
+        let extents = extents(&job, &header.crop);
+        let tiles = parts(&self.pixels, &extents, 1);
         let done = |(next, (_, sums)): (&u32, &(Crop, &[PixelSums]))| enough(&job, *next, sums);
         Film {
             crop: header.crop,
@@ -298,6 +306,10 @@ impl FilmSums {
                 complete: header.next.iter().zip(&tiles).all(done),
                 ..header.counts.report()
             },
+            mattes: header.mattes.as_ref().map(|names| {
+                let tiles = parts(&self.mattes, &extents, names.columns());
+                Mattes::assemble(names, tiles.into_iter(), &header.crop)
+            }),
             pixels: assemble(tiles.into_iter(), &header.crop),
         }
     }
@@ -313,14 +325,22 @@ impl FilmSums {
         for sums in &self.pixels {
             hasher.update(bytes_of(sums));
         }
+        let mattes: Vec<u8> = self.mattes.iter().flat_map(|n| n.to_le_bytes()).collect();
+        hasher.update(&mattes);
         let size = self.pixels.len() * WORDS * 8;
         let mut head = json!({
             "pixels": {
                 "dtype": "U64", "shape": [self.pixels.len(), WORDS], "data_offsets": [0, size],
             },
             "__metadata__": {MARK: text, "sha256": hex(&hasher.finalize())},
-        })
-        .to_string();
+        });
+        if let Some(names) = &self.header.mattes {
+            head["mattes"] = json!({
+                "dtype": "U32", "shape": [self.pixels.len(), names.columns()],
+                "data_offsets": [size, size + mattes.len()],
+            });
+        }
+        let mut head = head.to_string();
         while !head.len().is_multiple_of(8) {
             head.push(' ');
         }
@@ -331,6 +351,7 @@ impl FilmSums {
         for sums in &self.pixels {
             out.write_all(&bytes_of(sums)).map_err(fail)?;
         }
+        out.write_all(&mattes).map_err(fail)?;
         out.commit()
     }
 
@@ -384,19 +405,35 @@ impl FilmSums {
         }
         let tiles = header.check()?;
         let count: usize = tiles.iter().map(Crop::pixels).sum();
-        let (words, left) = array.as_chunks::<{ 8 * WORDS }>();
-        if words.len() != count || !left.is_empty() {
-            return Err(format!("it has {} pixels, not {count}", words.len()));
+        let columns = header.mattes.as_ref().map_or(0, MatteNames::columns);
+        if array.len() != count * (8 * WORDS + 4 * columns) {
+            return Err(format!("its size is not that of {count} pixels"));
         }
+        let (array, mattes) = array.split_at(count * 8 * WORDS);
+        let (words, _) = array.as_chunks::<{ 8 * WORDS }>();
+        let (mattes, _) = mattes.as_chunks::<4>();
         let pixels = words.iter().map(|bytes| {
             let (words, _) = bytes.as_chunks::<8>();
             PixelSums::from_words(&std::array::from_fn(|i| u64::from_le_bytes(words[i])))
         });
         Ok(Self {
             pixels: pixels.collect(),
+            mattes: mattes.iter().map(|n| u32::from_le_bytes(*n)).collect(),
             header,
         })
     }
+}
+
+/// An array tile by tile.
+///
+/// * `each`: its entries a pixel.
+fn parts<'a, T>(mut array: &'a [T], tiles: &[Crop], each: usize) -> Vec<(Crop, &'a [T])> {
+    let part = |tile: &Crop| {
+        let (part, later) = array.split_at(tile.pixels() * each);
+        array = later;
+        (*tile, part)
+    };
+    tiles.iter().map(part).collect()
 }
 
 fn bytes_of(sums: &PixelSums) -> [u8; 8 * WORDS] {

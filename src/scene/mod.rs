@@ -141,6 +141,10 @@ pub struct Scene {
     pub strands: Strands,
     /// Scattering of each hair class.
     pub materials: Vec<HairMaterial>,
+    /// Names of the hair classes.
+    pub classes: Vec<String>,
+    /// Names of the zones of the coat.
+    pub zones: Vec<String>,
     /// The skin under it.
     pub surface: Option<Surface>,
     /// The floor under it.
@@ -193,6 +197,8 @@ impl Scene {
         let mut scene = Self {
             strands,
             materials: parts.materials,
+            classes: named(&parts.groom.classes, &parts.groom.class, "class"),
+            zones: named(&parts.groom.coats, &parts.groom.coat, "zone"),
             surface,
             ground: None,
             environment: parts.environment,
@@ -257,6 +263,14 @@ impl Scene {
             .flat_map(|s| s.corners().iter().flatten().copied());
         strands.chain(skin)
     }
+}
+
+/// Names of all that strands belong to, and where the groom has none a word and the number.
+fn named(names: &[String], used: &[u8], word: &str) -> Vec<String> {
+    let count = used.iter().max().map_or(1, |&most| usize::from(most) + 1);
+    let mut names = names.to_vec();
+    names.extend((names.len()..count).map(|i| format!("{word} {i}")));
+    names
 }
 
 /// A scene that cannot be traced.

@@ -70,6 +70,9 @@ pub(in crate::cli) struct Args {
     /// How samples spread over and around their pixel.
     #[arg(long, value_enum, default_value = "gaussian")]
     pub(super) filter: FilterArg,
+    /// Adds mattes by name to the EXR: hair classes and zones of the coat, skin and ground, after Cryptomatte.
+    #[arg(long)]
+    pub(super) cryptomatte: bool,
     /// What scatters light: the baked tables, the hair model of Chiang et al. 2016 (Mitsuba, pbrt and
     /// Cycles have it too) with given numbers, or that model as near to the tables as it comes.
     #[arg(long, value_enum, default_value = "table")]

@@ -49,6 +49,14 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         output::format_of(output)?;
         check_writable(output)?;
     }
+    let holds_mattes = |path| matches!(output::format_of(path), Ok(Format::Exr | Format::Sums));
+    if args.cryptomatte && !args.output.iter().any(|path| holds_mattes(path)) {
+        return Err(Failure::with_help(
+            Blame::Input,
+            "--cryptomatte is for EXR files, and none is written",
+            "add -o NAME.exr, or .safetensors to merge into one",
+        ));
+    }
     for path in args.stats.iter().chain(&args.checkpoint) {
         check_writable(path)?;
     }
@@ -164,6 +172,7 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
             FilterArg::Box => Filter::Box,
             FilterArg::Tent => Filter::Tent,
         },
+        mattes: args.cryptomatte,
         time_limit: args.time,
     })
 }
