@@ -12,4 +12,4 @@ pub use self::canvas::{Canvas, GLYPH_HEIGHT, text_width};
 pub use self::denoise::denoise;
 pub use self::film::{PROVENANCE_ATTRIBUTE, Provenance, write_film_exr, write_film_png};
 pub use self::png::write_png;
-pub use self::view::{Curve, ViewTransform};
+pub use self::view::{Look, ViewTransform};

@@ -2,7 +2,7 @@
 
 use crate::blame::Blame;
 use crate::cli::Failure;
-use crate::image::{self, Curve, ViewTransform};
+use crate::image::{self, ViewTransform};
 use crate::render::{Film, FilmSums};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -13,12 +13,24 @@ pub(in crate::cli) struct Look {
     /// Exposure of the PNG, in stops.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     exposure: f32,
-    /// Cut the PNG at white instead of rolling bright parts off.
-    #[arg(long)]
-    plain: bool,
+    /// How the PNG shows bright parts.
+    #[arg(long, value_enum, default_value = "soft")]
+    look: LookArg,
     /// Write the PNG as it was sampled. By default noise is taken out of it, never out of the EXR.
     #[arg(long)]
     no_denoise: bool,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum LookArg {
+    /// As they are up to one half, then rolled off.
+    Soft,
+    /// Toe and shoulder of film, darker in all.
+    Filmic,
+    /// Colors as they are up to 0.8; brighter ones keep their hue.
+    Neutral,
+    /// As they are, cut at white.
+    Srgb,
 }
 
 /// Where a picture comes from: all that decides its samples besides their numbers.
@@ -86,10 +98,11 @@ pub(in crate::cli) fn write(
     ];
     let view = ViewTransform {
         exposure_ev: look.exposure,
-        curve: if look.plain {
-            Curve::Clip
-        } else {
-            Curve::Shoulder
+        look: match look.look {
+            LookArg::Soft => image::Look::Soft,
+            LookArg::Filmic => image::Look::Filmic,
+            LookArg::Neutral => image::Look::Neutral,
+            LookArg::Srgb => image::Look::Srgb,
         },
     };
     for output in outputs {
