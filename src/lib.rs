@@ -18,8 +18,10 @@ pub mod assembly;
 pub mod bake;
 pub mod blame;
 pub mod bsdf;
+pub mod check;
 pub mod cli;
 pub mod color;
+mod cursor;
 pub mod export;
 pub mod fiber;
 pub mod gallery;
@@ -38,6 +40,8 @@ pub mod scene;
 pub mod skin;
 pub mod species;
 pub mod table;
+pub mod usd_file;
+pub mod vdb_file;
 
 /// Name and version of this program, as its files say who made them.
 pub(crate) const PROGRAM: &str = concat!("vair ", env!("CARGO_PKG_VERSION"));

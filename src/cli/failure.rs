@@ -60,6 +60,7 @@ failures!(
     crate::assembly::AssemblyError,
     crate::bake::BakeError,
     crate::bake::SumsError,
+    crate::check::CheckError,
     crate::export::lines::LinesError,
     crate::export::volume::VolumeError,
     crate::fiber::FiberError,

@@ -6,6 +6,7 @@
 
 mod bake;
 mod cache;
+mod check;
 mod console;
 mod convert;
 mod export;
@@ -54,6 +55,8 @@ enum Command {
     Render(Box<render::Args>),
     /// Write the fur of a species for other programs: Universal Scene Description.
     Export(export::Args),
+    /// Read files of fur back and tell what each program will refuse, ignore or misread.
+    Check(check::Args),
     /// Look into scattering tables, dye them, draw them.
     Table(table::Args),
     /// Bring strands from one file format into another.
@@ -108,6 +111,7 @@ fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
     match command {
         Command::Render(args) => render::run(&args, console),
         Command::Export(args) => export::run(&args, console),
+        Command::Check(args) => check::run(&args, console),
         Command::Schema(args) => schema::run(&args, console),
         Command::Species(args) => species::run(&args, console),
         Command::Table(args) => table::run(&args, console),

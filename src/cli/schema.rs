@@ -2,6 +2,7 @@
 
 use super::stdout::print_json;
 use super::{Console, Failure};
+use crate::check;
 use crate::species;
 
 /// Prints the JSON Schema of a file format.
@@ -9,7 +10,8 @@ use crate::species;
 #[command(after_help = "Examples:
   vair schema species > species.schema.json
   vair schema pattern > pattern.schema.json
-  vair schema coat > coat.schema.json")]
+  vair schema coat > coat.schema.json
+  vair schema check > check.schema.json")]
 pub(super) struct Args {
     /// Which files.
     #[arg(value_enum, default_value_t = Format::Species)]
@@ -24,6 +26,8 @@ enum Format {
     Pattern,
     /// Recipes of coats.
     Coat,
+    /// What `vair check --json` prints.
+    Check,
 }
 
 /// Runs the command.
@@ -35,6 +39,7 @@ pub(super) fn run(args: &Args, _console: &Console) -> Result<(), Failure> {
         Format::Species => species::json_schema(),
         Format::Pattern => species::pattern_schema(),
         Format::Coat => species::coat_schema(),
+        Format::Check => check::json_schema(),
     };
     print_json(&schema)
 }

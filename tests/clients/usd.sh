@@ -26,7 +26,7 @@ nvidia)
         "$clients/usd/bin/nvidia_usd_validate" -D IndexedPrimvarChecker -D UsdShadeShaderSdrCompliance "$file"
     done
     ;;
-check_usd.py)
+check_usd.py | write_crates.py)
     environment usd usd-core==26.11 numpy==2.4.6 usd-validation-nvidia==1.22.0
     exec "$clients/usd/bin/python" -B "$here/$command" "$@"
     ;;

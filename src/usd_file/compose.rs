@@ -1,0 +1,337 @@
+//! The prims that a reader sees: sublayers, variants, references and payloads put together.
+//!
+//! Opinions are ordered as in Pixar's library (local, variants, references, payloads). Inherits,
+//! specializes, relocations and list edits that remove something are not followed; files of fur have none.
+
+use super::DEEPEST;
+use super::layer::{Fields, Layer, Prim, Property, Specifier, VariantSet};
+use super::value::{Reference, Value};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Most prims of a stage.
+const MOST_PRIMS: usize = 1_000_000;
+
+/// Most files that refer to one another in a row.
+const LONGEST_CHAIN: usize = 16;
+
+/// The files of a stage: read once, kept for all its views.
+pub struct Files<'f> {
+    open: &'f dyn Fn(&Path) -> Option<Layer>,
+    layers: HashMap<PathBuf, Option<Arc<Layer>>>,
+    /// Files that are named and could not be read, as they are named.
+    pub missing: Vec<String>,
+}
+
+impl<'f> Files<'f> {
+    /// * `open`: reads a file, or not.
+    pub fn new(open: &'f dyn Fn(&Path) -> Option<Layer>) -> Self {
+        Self {
+            open,
+            layers: HashMap::new(),
+            missing: Vec::new(),
+        }
+    }
+
+    fn layer(&mut self, path: &str) -> Option<Arc<Layer>> {
+        let key = PathBuf::from(path);
+        if let Some(known) = self.layers.get(&key) {
+            return known.clone();
+        }
+        let layer = (self.open)(&key).map(|mut layer| {
+            anchor_layer(&mut layer, &key);
+            Arc::new(layer)
+        });
+        if layer.is_none() {
+            self.missing.push(path.to_owned());
+        }
+        self.layers.insert(key, layer.clone());
+        layer
+    }
+}
+
+/// The root prims of a stage.
+///
+/// * `path`: of the file that `root` was read from; others are found beside it.
+/// * `chosen`: variants to show whatever the file says: set and name.
+pub fn compose(
+    root: &Layer,
+    path: &Path,
+    files: &mut Files<'_>,
+    chosen: &[(String, String)],
+) -> Vec<Prim> {
+    let mut root = root.clone();
+    anchor_layer(&mut root, path);
+    let mut composer = Composer {
+        files,
+        chosen,
+        room: MOST_PRIMS,
+    };
+    composer.layer(&root, 0)
+}
+
+/// Makes the files that a layer names absolute, so that it does not matter who reads them.
+fn anchor_layer(layer: &mut Layer, path: &Path) {
+    anchor_fields(&mut layer.metadata, path);
+    for prim in &mut layer.prims {
+        anchor_prim(prim, path);
+    }
+}
+
+fn anchor_prim(prim: &mut Prim, path: &Path) {
+    anchor_fields(&mut prim.metadata, path);
+    for child in &mut prim.children {
+        anchor_prim(child, path);
+    }
+    for variant in prim
+        .variant_sets
+        .iter_mut()
+        .flat_map(|set| &mut set.variants)
+    {
+        anchor_prim(variant, path);
+    }
+}
+
+fn anchor_fields(fields: &mut Fields, path: &Path) {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    for (name, value) in fields {
+        let sublayers = name == "subLayers";
+        match value {
+            Value::References(references) => {
+                for reference in references {
+                    let file = match reference.asset.as_str() {
+                        "" => path.to_owned(),
+                        asset => folder.join(asset.strip_prefix("./").unwrap_or(asset)),
+                    };
+                    reference.asset = file.to_string_lossy().into_owned();
+                }
+            }
+            // A crate file has the names of sublayers as plain strings.
+            Value::Texts(names) if sublayers => {
+                let reference = |name: &String| Reference {
+                    asset: folder.join(name).to_string_lossy().into_owned(),
+                    prim: String::new(),
+                };
+                *value = Value::References(names.iter().map(reference).collect());
+            }
+            _ => {}
+        }
+    }
+}
+
+struct Composer<'c, 'f> {
+    files: &'c mut Files<'f>,
+    chosen: &'c [(String, String)],
+    /// Prims that may still be made.
+    room: usize,
+}
+
+impl Composer<'_, '_> {
+    /// The root prims of a layer and of those below it.
+    fn layer(&mut self, layer: &Layer, chain: usize) -> Vec<Prim> {
+        let mut all = Prim::default();
+        for prim in &layer.prims {
+            let path = format!("/{}", prim.name);
+            if let Some(prim) = self.prim(prim, &path, &[], 0, chain) {
+                all.children.push(prim);
+            }
+        }
+        if let Some(Value::References(sublayers)) = layer.field("subLayers")
+            && chain < LONGEST_CHAIN
+        {
+            for sublayer in sublayers {
+                if let Some(layer) = self.files.layer(&sublayer.asset) {
+                    let below = Prim {
+                        children: self.layer(&layer, chain + 1),
+                        ..Prim::default()
+                    };
+                    merge(&mut all, below);
+                }
+            }
+        }
+        all.children
+    }
+
+    /// A prim with all that is added to it; `None` beyond the limits.
+    ///
+    /// * `path`: where it goes to. * `selections`: variants that stronger opinions choose.
+    fn prim(
+        &mut self,
+        spec: &Prim,
+        path: &str,
+        selections: &[(String, String)],
+        depth: usize,
+        chain: usize,
+    ) -> Option<Prim> {
+        self.room = self.room.checked_sub(1)?;
+        if depth > DEEPEST || chain > LONGEST_CHAIN {
+            return None;
+        }
+        let mut prim = Prim {
+            children: Vec::new(),
+            variant_sets: Vec::new(),
+            ..spec.clone()
+        };
+        for child in &spec.children {
+            let below = format!("{path}/{}", child.name);
+            prim.children
+                .extend(self.prim(child, &below, &[], depth + 1, chain));
+        }
+        let mut selections = selections.to_vec();
+        for field in ["variants", "variantSelection"] {
+            if let Some(Value::Dictionary(entries)) = spec.field(field) {
+                for (set, variant) in entries {
+                    let known = selections.iter().any(|(s, _)| s == set);
+                    if let Some(variant) = variant.text().filter(|_| !known) {
+                        selections.push((set.clone(), variant.to_owned()));
+                    }
+                }
+            }
+        }
+        for set in &spec.variant_sets {
+            let all = self.chosen.iter().chain(&selections);
+            let choice = all.clone().find(|(name, _)| *name == set.name);
+            let variant =
+                choice.and_then(|(_, name)| set.variants.iter().find(|v| v.name == *name));
+            if let Some(variant) = variant
+                && let Some(below) = self.prim(variant, path, &selections, depth + 1, chain)
+            {
+                merge(&mut prim, below);
+            }
+            // What there is to choose from.
+            prim.variant_sets.push(VariantSet {
+                name: set.name.clone(),
+                variants: set.variants.iter().map(name_only).collect(),
+            });
+        }
+        for field in ["references", "payload"] {
+            if let Some(Value::References(references)) = spec.field(field) {
+                for reference in references {
+                    if let Some(below) = self.referred(reference, path, &selections, depth, chain) {
+                        merge(&mut prim, below);
+                    }
+                }
+            }
+        }
+        Some(prim)
+    }
+
+    fn referred(
+        &mut self,
+        reference: &Reference,
+        path: &str,
+        selections: &[(String, String)],
+        depth: usize,
+        chain: usize,
+    ) -> Option<Prim> {
+        let layer = self.files.layer(&reference.asset)?;
+        let from = match reference.prim.as_str() {
+            "" => format!(
+                "/{}",
+                layer.field("defaultPrim")?.text()?.trim_start_matches('/')
+            ),
+            prim => prim.to_owned(),
+        };
+        let mut names = from.split('/').filter(|name| !name.is_empty());
+        let first = names.next()?;
+        let root = layer.prims.iter().find(|prim| prim.name == first)?;
+        let spec = names.try_fold(root, |prim, name| prim.child(name))?;
+        let mut prim = self.prim(spec, path, selections, depth + 1, chain + 1)?;
+        if from != path {
+            moved(&mut prim, &from, path);
+        }
+        Some(prim)
+    }
+}
+
+fn name_only(variant: &Prim) -> Prim {
+    Prim {
+        name: variant.name.clone(),
+        ..Prim::default()
+    }
+}
+
+/// Has the targets of relationships follow a prim to another place.
+fn moved(prim: &mut Prim, from: &str, to: &str) {
+    for target in prim.properties.iter_mut().flat_map(|p| &mut p.targets) {
+        if let Some(rest) = target.strip_prefix(from)
+            && (rest.is_empty() || rest.starts_with(['/', '.']))
+        {
+            *target = format!("{to}{rest}");
+        }
+    }
+    for child in &mut prim.children {
+        moved(child, from, to);
+    }
+}
+
+/// Adds what a weaker opinion says and the stronger one does not.
+fn merge(strong: &mut Prim, weak: Prim) {
+    if strong.specifier == Specifier::Over {
+        strong.specifier = weak.specifier;
+    }
+    if strong.type_name.is_empty() {
+        strong.type_name = weak.type_name;
+    }
+    merge_fields(&mut strong.metadata, weak.metadata);
+    by_name(
+        &mut strong.properties,
+        weak.properties,
+        |p| &p.name,
+        merge_property,
+    );
+    by_name(&mut strong.children, weak.children, |p| &p.name, merge);
+    by_name(
+        &mut strong.variant_sets,
+        weak.variant_sets,
+        |s| &s.name,
+        |_, _| {},
+    );
+}
+
+fn by_name<T>(
+    strong: &mut Vec<T>,
+    weak: Vec<T>,
+    name: impl Fn(&T) -> &String,
+    merge: impl Fn(&mut T, T),
+) {
+    let places = strong.iter().enumerate().map(|(i, t)| (name(t).clone(), i));
+    let places: HashMap<String, usize> = places.collect();
+    for thing in weak {
+        match places.get(name(&thing)) {
+            Some(&place) => merge(&mut strong[place], thing),
+            None => strong.push(thing),
+        }
+    }
+}
+
+fn merge_property(strong: &mut Property, weak: Property) {
+    if strong.type_name.is_empty() {
+        strong.type_name = weak.type_name;
+    }
+    if strong.value.is_none() && strong.samples.is_empty() {
+        strong.value = weak.value;
+        strong.samples = weak.samples;
+    }
+    if strong.targets.is_empty() {
+        strong.targets = weak.targets;
+    }
+    merge_fields(&mut strong.metadata, weak.metadata);
+}
+
+fn merge_fields(strong: &mut Fields, weak: Fields) {
+    for (name, value) in weak {
+        match (strong.iter_mut().find(|(known, _)| *known == name), value) {
+            (None, value) => strong.push((name, value)),
+            (Some((_, Value::Texts(list))), Value::Texts(more)) => {
+                let new: Vec<String> = more.into_iter().filter(|m| !list.contains(m)).collect();
+                list.extend(new);
+            }
+            (Some((_, Value::Dictionary(entries))), Value::Dictionary(more)) => {
+                merge_fields(entries, more);
+            }
+            _ => {}
+        }
+    }
+}

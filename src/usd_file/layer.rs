@@ -1,0 +1,127 @@
+//! What stands in one file.
+
+use super::value::Value;
+
+/// Names and values of metadata.
+pub type Fields = Vec<(String, Value)>;
+
+/// One file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layer {
+    /// `defaultPrim`, `metersPerUnit`, `upAxis` and the like.
+    pub metadata: Fields,
+    /// Root prims.
+    pub prims: Vec<Prim>,
+}
+
+/// What a prim's opinion does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Specifier {
+    /// Makes the prim.
+    Def,
+    /// Adds to one that is made elsewhere.
+    #[default]
+    Over,
+    /// A prim to inherit from; not shown.
+    Class,
+}
+
+/// A prim, or what one variant says of its prim.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Prim {
+    /// Its name among its siblings.
+    pub name: String,
+    /// What the opinion does.
+    pub specifier: Specifier,
+    /// Schema; empty for none.
+    pub type_name: String,
+    /// `kind`, `apiSchemas`, `payload` and the like.
+    pub metadata: Fields,
+    /// Attributes and relationships.
+    pub properties: Vec<Property>,
+    /// Prims below.
+    pub children: Vec<Prim>,
+    /// Sets of variants.
+    pub variant_sets: Vec<VariantSet>,
+}
+
+/// Alternatives of a prim.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct VariantSet {
+    /// Its name.
+    pub name: String,
+    /// Name and content of each.
+    pub variants: Vec<Prim>,
+}
+
+/// An attribute or a relationship.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Property {
+    /// With its namespaces.
+    pub name: String,
+    /// `texCoord2f[]`; empty for a relationship.
+    pub type_name: String,
+    /// The value for all times.
+    pub value: Option<Value>,
+    /// Values by time.
+    pub samples: Vec<(f64, Value)>,
+    /// Prims that a relationship names, or the attributes that give this one its value.
+    pub targets: Vec<String>,
+    /// `interpolation` and the like.
+    pub metadata: Fields,
+}
+
+/// The value of a field.
+pub(super) fn field<'f>(fields: &'f Fields, name: &str) -> Option<&'f Value> {
+    fields.iter().find(|(key, _)| key == name).map(|(_, v)| v)
+}
+
+impl Layer {
+    /// A value of the layer's metadata.
+    pub fn field(&self, name: &str) -> Option<&Value> {
+        field(&self.metadata, name)
+    }
+}
+
+impl Prim {
+    /// A value of the prim's metadata.
+    pub fn field(&self, name: &str) -> Option<&Value> {
+        field(&self.metadata, name)
+    }
+
+    /// The property of a name.
+    pub fn property(&self, name: &str) -> Option<&Property> {
+        self.properties.iter().find(|p| p.name == name)
+    }
+
+    /// The value of an attribute: for all times, else the earliest.
+    pub fn value(&self, name: &str) -> Option<&Value> {
+        self.property(name)?.any_value()
+    }
+
+    /// Whether an applied schema is among those of the prim.
+    pub fn has_api(&self, name: &str) -> bool {
+        matches!(self.field("apiSchemas"), Some(Value::Texts(all)) if all.iter().any(|a| a == name))
+    }
+
+    /// The child of a name.
+    pub fn child(&self, name: &str) -> Option<&Prim> {
+        self.children.iter().find(|c| c.name == name)
+    }
+}
+
+impl Property {
+    /// The value for all times, else the earliest.
+    pub fn any_value(&self) -> Option<&Value> {
+        let first = || self.samples.first().map(|(_, value)| value);
+        let value = self.value.as_ref().or_else(first)?;
+        (*value != Value::Block).then_some(value)
+    }
+
+    /// A word of the metadata; empty if there is none.
+    pub fn word(&self, name: &str) -> &str {
+        field(&self.metadata, name)
+            .and_then(Value::text)
+            .unwrap_or_default()
+    }
+}

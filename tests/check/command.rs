@@ -1,0 +1,97 @@
+//! `vair check` from outside: what it prints and how it ends.
+
+use super::FUR;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn vair(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_vair"))
+        .current_dir(folder)
+        .arg("check")
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn exit_codes_are_those_of_the_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let fault = FUR.replacen(
+        "float3[] primvars:groom_color",
+        "color3f[] primvars:groom_color",
+        1,
+    );
+    let remark = FUR.replacen("    kind = \"component\"\n", "", 1);
+    for (name, text) in [
+        ("good.usda", FUR),
+        ("bad.usda", &fault),
+        ("odd.usda", &remark),
+    ] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    fs::write(folder.path().join("torn.usda"), "#usda 1.0\ndef {").unwrap();
+    for (arguments, code) in [
+        (&["good.usda"][..], 0),
+        (&["odd.usda"], 0),
+        (&["odd.usda", "--strict"], 1),
+        (&["good.usda", "bad.usda"], 1),
+        (&["bad.usda", "--profile", "blender"], 0),
+        (&["torn.usda"], 1),
+        (&["good.usda", "--profile", "maxwell"], 1),
+        (&["gone.usda"], 2),
+        (&["--explain", "C07"], 0),
+        (&["--explain", "C77"], 1),
+    ] {
+        let output = vair(folder.path(), arguments);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
+fn findings_are_printed_as_text_and_as_the_schema_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let fault = FUR.replacen(
+        "float3[] primvars:groom_color",
+        "color3f[] primvars:groom_color",
+        1,
+    );
+    fs::write(folder.path().join("fur.usda"), fault).unwrap();
+    let output = vair(folder.path(), &["fur.usda", "--profile", "unreal"]);
+    assert_eq!(
+        String::from_utf8(output.stdout).unwrap(),
+        "fur.usda: C07 error /fox/geo/render/guard.primvars:groom_color: groom_color is color3f[]: Unreal ignores it \
+         and shades black. Remedy: write float3[]. [unreal]\n"
+    );
+    let output = vair(folder.path(), &["fur.usda", "--json"]);
+    let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let schema: Value =
+        serde_json::from_str(include_str!("../../schemas/check.schema.json")).unwrap();
+    let keys = |value: &Value| {
+        value
+            .as_object()
+            .unwrap()
+            .keys()
+            .cloned()
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(keys(&printed), keys(&schema["properties"]));
+    let finding = &schema["properties"]["findings"]["items"]["properties"];
+    for found in printed["findings"].as_array().unwrap() {
+        assert_eq!(keys(found), keys(finding));
+        let rules = finding["rule"]["enum"].as_array().unwrap();
+        assert!(rules.contains(&found["rule"]), "{found}");
+    }
+    assert_eq!(printed["errors"], 1);
+}
+
+/// Every rule is on the page that describes them, with its number.
+#[test]
+fn the_page_has_all_rules() {
+    let page = include_str!("../../docs/check.md");
+    for rule in &vair::check::RULES {
+        assert!(page.contains(&format!("| {} | ", rule.id)), "{}", rule.id);
+    }
+}
