@@ -1,12 +1,14 @@
 //! Writes assets of every kind with their numbers beside them, for `tests/clients/usd.sh` to have them
 //! read by Pixar's library: target/tmp/usd/NAME.usda and .usdc and, as plain numbers, NAME.raw.
-//!
-//! A .raw file is a sequence of arrays: path of the attribute (length as u32, bytes), `f` or `i`, the
-//! number of numbers (u32), the numbers (4 bytes each). They are taken from grooms here, not from what
-//! the writer was given: those of a coarser level are of a groom that was grown with fewer strands.
+//! What .raw holds: `raw/arrays.rs`. Numbers of a coarser level are of a groom that was grown with fewer
+//! strands.
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "raw/arrays.rs"]
+mod arrays;
+
+use arrays::Raw;
 use std::fs;
 use std::path::PathBuf;
 use vair::assembly::looks;
@@ -22,28 +24,6 @@ use vair::species::{self, Species};
 /// Strands of the full level.
 const STRANDS: usize = 1600;
 
-#[derive(Default)]
-struct Raw(Vec<u8>);
-
-impl Raw {
-    fn head(&mut self, path: &str, kind: u8, count: usize) {
-        self.0.extend((path.len() as u32).to_le_bytes());
-        self.0.extend(path.as_bytes());
-        self.0.push(kind);
-        self.0.extend((count as u32).to_le_bytes());
-    }
-
-    fn floats(&mut self, path: &str, values: &[f32]) {
-        self.head(path, b'f', values.len());
-        self.0.extend(values.iter().flat_map(|v| v.to_le_bytes()));
-    }
-
-    fn ints(&mut self, path: &str, values: &[i32]) {
-        self.head(path, b'i', values.len());
-        self.0.extend(values.iter().flat_map(|v| v.to_le_bytes()));
-    }
-}
-
 fn folder() -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("usd");
     fs::create_dir_all(&folder).unwrap();
@@ -56,42 +36,6 @@ fn grown(skin: &Skin, species: &Species, strands: usize) -> Groom {
         seed: 5,
     };
     grow(skin, species, &settings, &Silent, &Cancel::default()).unwrap()
-}
-
-/// The numbers of one class of a groom, with `turn` from its frame to that of the file.
-fn raw(
-    raw: &mut Raw,
-    groom: &Groom,
-    class: usize,
-    prim: &str,
-    turn: impl Fn([f32; 3]) -> [f32; 3],
-    scale: f32,
-) {
-    let (mut points, mut widths, mut counts) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut ids, mut uvs, mut triangles, mut places) = (vec![], vec![], vec![], vec![]);
-    for strand in (0..groom.strands()).filter(|&i| usize::from(groom.class[i]) == class) {
-        for i in groom.offsets[strand] as usize..groom.offsets[strand + 1] as usize {
-            points.extend(turn(groom.points[i].to_array()));
-            widths.push(groom.widths[i] * scale);
-        }
-        counts.push((groom.offsets[strand + 1] - groom.offsets[strand]) as i32);
-        ids.push(groom.id[strand] as i32);
-        uvs.extend(groom.root_uv[strand].to_array());
-        triangles.push(groom.root_triangle[strand] as i32);
-        let [u, v] = groom.root_barycentric[strand].to_array();
-        places.extend([u, v, 0.0]);
-    }
-    raw.floats(&format!("{prim}.points"), &points);
-    raw.floats(&format!("{prim}.widths"), &widths);
-    raw.ints(&format!("{prim}.curveVertexCounts"), &counts);
-    for name in ["curve_id", "groom_id"] {
-        raw.ints(&format!("{prim}.primvars:{name}"), &ids);
-    }
-    for name in ["st", "groom_root_uv", "surface_uv_coordinate"] {
-        raw.floats(&format!("{prim}.primvars:{name}"), &uvs);
-    }
-    raw.ints(&format!("{prim}.primvars:skinprim"), &triangles);
-    raw.floats(&format!("{prim}.primvars:skinprimuv"), &places);
 }
 
 fn export(name: &str, species: &str, skin: &str, count: usize, settings: &AssetSettings) {
@@ -152,7 +96,7 @@ fn export(name: &str, species: &str, skin: &str, count: usize, settings: &AssetS
             };
             let root = species.id.replace('-', "_");
             let prim = format!("{lod}/{root}/geo/render/{class_name}");
-            raw(&mut numbers, &groom, class, &prim, turn, scale);
+            numbers.class(&groom, class, &prim, turn, scale);
         }
     }
     fs::write(folder.join(name).with_extension("raw"), numbers.0).unwrap();

@@ -1,14 +1,13 @@
 //! Writes OpenVDB files of every kind with their voxels beside them, for `tests/clients/vdb.sh` to
-//! have them read by OpenVDB: target/tmp/vdb/NAME.vdb and, as plain numbers, NAME.raw.
-//!
-//! A .raw file is a sequence of grids: name (length as u32, bytes), components a value (u32), the
-//! background, then the number of leaves (u32) and for each its origin (3 x i32), 512 bits of activity
-//! and 512 values; then the number of tiles (u32) and for each origin, edge (i32), active (u32), value.
-//! Floats throughout, already rounded where the file has halves.
+//! have them read by OpenVDB: target/tmp/vdb/NAME.vdb and, as plain numbers, NAME.raw (`raw/grids.rs`).
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "raw/grids.rs"]
+mod grids;
+
 use glam::{IVec3, Vec3};
+use grids::Raw;
 use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::PathBuf;
@@ -25,50 +24,6 @@ fn noise(at: IVec3, salt: u32) -> f32 {
     h ^= h >> 13;
     h = h.wrapping_mul(0xc2b2_ae35);
     ((h ^ (h >> 16)) >> 8) as f32 / (1 << 24) as f32
-}
-
-struct Raw(Vec<u8>);
-
-impl Raw {
-    fn value<T: Value>(&mut self, value: T, half: bool) {
-        let value = if half { value.to_half() } else { value };
-        for c in value.components() {
-            self.0.extend(c.to_le_bytes());
-        }
-    }
-
-    fn place(&mut self, at: IVec3) {
-        for c in at.to_array() {
-            self.0.extend(c.to_le_bytes());
-        }
-    }
-
-    fn number(&mut self, n: usize) {
-        self.0.extend((n as u32).to_le_bytes());
-    }
-
-    fn grid<T: Value>(&mut self, grid: &Grid<T>, tiles: &[Tile<T>]) {
-        self.number(grid.name.len());
-        self.0.extend(grid.name.as_bytes());
-        self.number(T::ZERO.components().len());
-        self.value(grid.tree.background(), grid.half);
-        self.number(grid.tree.leaves().len());
-        for leaf in grid.tree.leaves() {
-            self.place(leaf.origin);
-            self.0
-                .extend(leaf.active.iter().flat_map(|w| w.to_le_bytes()));
-            for &value in leaf.values.iter() {
-                self.value(value, grid.half);
-            }
-        }
-        self.number(tiles.len());
-        for tile in tiles {
-            self.place(tile.origin);
-            self.number(tile.size.edge() as usize);
-            self.number(usize::from(tile.active));
-            self.value(tile.value, grid.half);
-        }
-    }
 }
 
 /// Leaves on both sides of all borders of nodes, with few, many and all voxels active, and with none,
@@ -132,7 +87,7 @@ fn write(name: &str, half: bool, compression: Compression) {
     let path = folder.join(name);
     let out = BufWriter::new(File::create(path.with_extension("vdb")).unwrap());
     let mut writer = Writer::new(out, compression, "vair test").unwrap();
-    let mut raw = Raw(Vec::new());
+    let mut raw = Raw::default();
 
     let scalar = |at: IVec3, salt: u32| 3.0 * noise(at, salt) - 1.0;
     let vector = |at: IVec3, salt: u32| {
@@ -153,10 +108,10 @@ fn write(name: &str, half: bool, compression: Compression) {
             voxel: 0.25,
             half,
             metadata: vec![("unit".into(), Meta::Text("1/m".into()))],
-            tree: Tree::new(background, leaves(background, scalar), tiles.clone()).unwrap(),
+            tree: Tree::new(background, leaves(background, scalar), tiles).unwrap(),
         };
         writer.grid(&grid).unwrap();
-        raw.grid(&grid, &tiles);
+        raw.grid(&grid);
     }
     let background = Vec3::new(0.1, 0.0, -0.7);
     let tiles = tiles(background, vector);
@@ -169,10 +124,10 @@ fn write(name: &str, half: bool, compression: Compression) {
             VectorKind::Invariant.meta(),
             ("gain".into(), Meta::Double(0.1)),
         ],
-        tree: Tree::new(background, leaves(background, vector), tiles.clone()).unwrap(),
+        tree: Tree::new(background, leaves(background, vector), tiles).unwrap(),
     };
     writer.grid(&grid).unwrap();
-    raw.grid(&grid, &tiles);
+    raw.grid(&grid);
     let empty = Grid {
         name: "empty".into(),
         class: Class::FogVolume,
@@ -182,7 +137,7 @@ fn write(name: &str, half: bool, compression: Compression) {
         tree: Tree::new(0.0f32, Vec::new(), Vec::new()).unwrap(),
     };
     writer.grid(&empty).unwrap();
-    raw.grid(&empty, &[]);
+    raw.grid(&empty);
     writer.finish().unwrap();
     fs::write(path.with_extension("raw"), raw.0).unwrap();
 }

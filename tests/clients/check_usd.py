@@ -1,7 +1,7 @@
 """Pixar's library reads assets: check_usd.py NAME ...   (NAME.usda and NAME.usdc, and NAME.raw if it is there)
 
 All validators pass, both files print as the same text, curves are what their schema asks for, and every
-number is bit for bit the one in NAME.raw (see tests/usd_files.rs).
+number is bit for bit the one in NAME.raw (see tests/raw/arrays.rs).
 """
 
 import re

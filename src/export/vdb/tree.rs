@@ -250,9 +250,13 @@ impl<T: Value> Tree<T> {
         (lowers.len() as u64, uppers.len() as u64)
     }
 
+    /// All tiles.
+    pub fn tiles(&self) -> impl Iterator<Item = &Tile<T>> {
+        self.small.iter().chain(&self.large)
+    }
+
     fn active_tiles(&self) -> impl Iterator<Item = &Tile<T>> {
-        let all = self.small.iter().chain(&self.large);
-        all.filter(|tile| tile.active)
+        self.tiles().filter(|tile| tile.active)
     }
 }
 

@@ -152,6 +152,15 @@ pub fn plan(
     }
 }
 
+/// A grid of a coat.
+#[derive(Clone, Debug)]
+pub enum CoatGrid {
+    /// Of numbers.
+    Scalar(Grid<f32>),
+    /// Of directions or colors.
+    Vector(Grid<Vec3>),
+}
+
 /// Fills the grids and writes them as an OpenVDB file.
 ///
 /// * `skin`: the mesh for [`Field::Surface`].
@@ -169,89 +178,112 @@ pub fn write<W: Write + Seek>(
 ) -> Result<(W, Vec<Written>), VolumeError> {
     let mut writer = Writer::new(out, settings.compression, crate::PROGRAM)?;
     let mut written = Vec::new();
-    let of = |voxels: &[Moments], origin| {
-        let fields = settings.fields.iter().filter(|f| **f != Field::Surface);
-        fields
-            .map(|&field| match field.is_vector() {
-                true => Leaves::Vector(vector_leaf(field, origin, voxels)),
-                false => Leaves::Scalar(scalar_leaf(field, origin, voxels, plan.voxel)),
-            })
-            .collect::<Vec<_>>()
+    let put = &mut |field, grid: CoatGrid| {
+        written.push(match grid {
+            CoatGrid::Scalar(grid) => put(&mut writer, field, &grid),
+            CoatGrid::Vector(grid) => put(&mut writer, field, &grid),
+        }?);
+        Ok(())
     };
-    let make = |origin, voxels: &[Moments]| of(voxels, origin).into_iter();
+    fill(curves, skin, plan, settings, progress, cancel, put)?;
+    Ok((writer.finish()?, written))
+}
+
+/// Fills the grids one after the other, in the order of [`write`].
+///
+/// * `skin`: the mesh for [`Field::Surface`].
+/// * `put`: takes each grid when it is full.
+///
+/// # Errors
+/// An open skin where its distance is asked for, those of `put`, `cancel`.
+pub fn fill(
+    curves: &Curves<'_>,
+    skin: &Mesh<'_>,
+    plan: &Plan,
+    settings: &VolumeSettings,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+    put: &mut dyn FnMut(Field, CoatGrid) -> Result<(), VolumeError>,
+) -> Result<(), VolumeError> {
+    let of_strands = || settings.fields.iter().filter(|f| **f != Field::Surface);
+    let make = |origin, voxels: &[Moments]| {
+        let leaf = |&field: &Field| match field.is_vector() {
+            true => AnyLeaf::Vector(vector_leaf(field, origin, voxels)),
+            false => AnyLeaf::Scalar(scalar_leaf(field, origin, voxels, plan.voxel)),
+        };
+        of_strands().map(leaf).collect::<Vec<_>>().into_iter()
+    };
     let mut made = plan.listing.map(curves, progress, cancel, make)?;
-    for &field in settings.fields.iter().filter(|f| **f != Field::Surface) {
+    for &field in of_strands() {
         let (mut scalars, mut vectors) = (Vec::new(), Vec::new());
         for leaf in made.iter_mut().filter_map(Iterator::next) {
             match leaf {
-                Leaves::Scalar(leaf) => scalars.push(leaf),
-                Leaves::Vector(leaf) => vectors.push(leaf),
+                AnyLeaf::Scalar(leaf) => scalars.push(leaf),
+                AnyLeaf::Vector(leaf) => vectors.push(leaf),
             }
         }
         if matches!(field, Field::Color | Field::Cd) {
             vectors = spread(&vectors);
         }
-        written.push(if field.is_vector() {
-            put(
-                &mut writer,
-                field,
-                Tree::new(Vec3::ZERO, vectors, Vec::new())?,
-                plan,
-                settings,
-            )?
+        let filled = if field.is_vector() {
+            let tree = Tree::new(Vec3::ZERO, vectors, Vec::new())?;
+            CoatGrid::Vector(grid(field, tree, plan, settings))
         } else {
-            put(
-                &mut writer,
-                field,
-                Tree::new(0.0, scalars, Vec::new())?,
-                plan,
-                settings,
-            )?
-        });
+            let tree = Tree::new(0.0, scalars, Vec::new())?;
+            CoatGrid::Scalar(grid(field, tree, plan, settings))
+        };
+        put(field, filled)?;
     }
     if settings.fields.contains(&Field::Surface) {
         let tree = signed_distance(skin, plan.voxel, settings.shell, progress, cancel)?;
-        written.push(put(&mut writer, Field::Surface, tree, plan, settings)?);
+        let filled = grid(Field::Surface, tree, plan, settings);
+        put(Field::Surface, CoatGrid::Scalar(filled))?;
     }
-    Ok((writer.finish()?, written))
+    Ok(())
 }
 
 /// A leaf of either type.
-enum Leaves {
+enum AnyLeaf {
     Scalar(Leaf<f32>),
     Vector(Leaf<Vec3>),
 }
 
-fn put<T: Value, W: Write + Seek>(
-    writer: &mut Writer<W>,
+fn grid<T: Value>(
     field: Field,
     mut tree: Tree<T>,
     plan: &Plan,
     settings: &VolumeSettings,
-) -> Result<Written, VolumeError> {
+) -> Grid<T> {
     tree.drop_empty();
     let mut metadata = field.metadata(settings.meters_per_unit);
     metadata.extend(settings.provenance.iter().cloned());
-    let mut sum = 0.0;
-    for leaf in tree.leaves() {
-        let active = (0..512).filter(|&i| leaf.is_active(i));
-        sum += active
-            .map(|i| f64::from(leaf.values[i].components()[0]))
-            .sum::<f64>();
-    }
-    let summary = Written {
-        field,
-        active: tree.active_count(),
-        bounds: tree.active_bounds(),
-        integral: sum * plan.voxel.powi(3),
-    };
-    writer.grid(&Grid {
+    Grid {
         name: field.name().to_owned(),
         class: field.class(),
         voxel: plan.voxel,
         half: settings.half,
         metadata,
         tree,
-    })?;
-    Ok(summary)
+    }
+}
+
+fn put<T: Value, W: Write + Seek>(
+    writer: &mut Writer<W>,
+    field: Field,
+    grid: &Grid<T>,
+) -> Result<Written, VolumeError> {
+    let mut sum = 0.0;
+    for leaf in grid.tree.leaves() {
+        let active = (0..512).filter(|&i| leaf.is_active(i));
+        sum += active
+            .map(|i| f64::from(leaf.values[i].components()[0]))
+            .sum::<f64>();
+    }
+    writer.grid(grid)?;
+    Ok(Written {
+        field,
+        active: grid.tree.active_count(),
+        bounds: grid.tree.active_bounds(),
+        integral: sum * grid.voxel.powi(3),
+    })
 }
