@@ -1,6 +1,7 @@
 //! `vair export`: the fur of a species for other programs.
 
 mod lines;
+mod usdz;
 mod volume;
 
 use super::skin::SkinArgs;
@@ -111,7 +112,7 @@ pub(super) struct Args {
     set: Vec<String>,
     #[command(flatten)]
     volume: volume::VolumeArgs,
-    /// Where the fur goes: .usdc, .usd or .usda; grids of it: .vdb; plain strands: .hair, .npz, .ply,
+    /// Where the fur goes: .usdc, .usd or .usda; a mesh in its place for viewers on phones: .usdz; grids of it: .vdb; plain strands: .hair, .npz, .ply,
     /// .glb, .pbrt. May repeat.
     #[arg(long, short, required = true)]
     output: Vec<PathBuf>,
@@ -179,7 +180,9 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     let settings = settings(args)?;
     let grids = volume::settings(&args.volume, &args.output, settings.frame)?;
     for output in &args.output {
-        Format::of(output)?;
+        if Format::of(output)? == Format::Usdz {
+            crate::export::usdz::check(output, settings.frame)?;
+        }
         check_writable(output)?;
     }
     let skin = args.on.load()?;
@@ -218,6 +221,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         match Format::of(output)? {
             Format::Lines(format) => lines::run(output, format, &parts, frame, console)?,
             Format::Vdb => volume::run(output, &parts, &args.volume, &grids, frame, console)?,
+            Format::Usdz => usdz::run(output, &parts, frame, console)?,
             Format::Usd(_) => {
                 asset::write(output, &parts, &settings, console, cancel)?;
                 console.say(format!("{}: {}", output.display(), described(&parts)));

@@ -13,6 +13,12 @@ pub enum ExportError {
         /// The file.
         path: PathBuf,
     },
+    /// A .usdz whose Z is up.
+    #[error("{}: viewers of .usdz take Y for up", path.display())]
+    UsdzUp {
+        /// The file.
+        path: PathBuf,
+    },
     /// A point, a width or a coordinate that is no number: one of them makes readers drop all curves.
     #[error("strand {id} (number {index}) has {what} that is not finite")]
     NotFinite {
@@ -38,7 +44,7 @@ impl ExportError {
     /// Who has to act.
     pub fn blame(&self) -> Blame {
         match self {
-            Self::Suffix { .. } | Self::Empty => Blame::Input,
+            Self::Suffix { .. } | Self::UsdzUp { .. } | Self::Empty => Blame::Input,
             Self::NotFinite { .. } => Blame::Internal,
             Self::File(error) => error.blame(),
             Self::Cancelled => Blame::Interrupted,
@@ -48,9 +54,10 @@ impl ExportError {
     /// What the user can do about it.
     pub fn remedy(&self) -> Option<&'static str> {
         match self {
-            Self::Suffix { .. } => {
-                Some("end the name in .usdc, .usd, .usda, .vdb, .hair, .npz, .ply, .glb or .pbrt")
-            }
+            Self::Suffix { .. } => Some(
+                "end the name in .usdc, .usd, .usda, .usdz, .vdb, .hair, .npz, .ply, .glb or .pbrt",
+            ),
+            Self::UsdzUp { .. } => Some("write it without --up z"),
             Self::Empty => Some("ask for more --strands"),
             _ => None,
         }

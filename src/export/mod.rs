@@ -1,13 +1,15 @@
 //! Files for other programs.
 //!
 //! [`usd`] and [`vdb`] are formats and know nothing of fur; [`asset`] makes a component asset of a groom,
-//! [`volume`] grids, [`lines`] plain strands; [`mitsuba`] writes a whole scene.
+//! [`volume`] grids, [`lines`] plain strands,
+//! [`usdz`] a mesh in their place; [`mitsuba`] writes a whole scene.
 
 pub mod asset;
 mod error;
 pub mod lines;
 pub mod mitsuba;
 pub mod usd;
+pub mod usdz;
 pub mod vdb;
 pub mod volume;
 
@@ -20,6 +22,8 @@ use std::path::Path;
 pub enum Format {
     /// Universal Scene Description: `.usda` as text, `.usdc` and `.usd` in binary form.
     Usd(usd::Form),
+    /// `.usdz`: a mesh in place of the fur.
+    Usdz,
     /// `.vdb`: grids of density, color and others.
     Vdb,
     /// Plain strands: `.hair`, `.npz`, `.ply`, `.glb`, `.pbrt`.
@@ -36,6 +40,7 @@ impl Format {
         match suffix.to_ascii_lowercase().as_str() {
             "usda" => Ok(Self::Usd(usd::Form::Text)),
             "usdc" | "usd" => Ok(Self::Usd(usd::Form::Binary)),
+            "usdz" => Ok(Self::Usdz),
             "vdb" => Ok(Self::Vdb),
             other => match lines::LineFormat::of_suffix(other) {
                 Some(format) => Ok(Self::Lines(format)),

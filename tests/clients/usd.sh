@@ -30,6 +30,11 @@ check_usd.py | write_crates.py)
     environment usd usd-core==26.11 numpy==2.4.6 usd-validation-nvidia==1.22.0
     exec "$clients/usd/bin/python" -B "$here/$command" "$@"
     ;;
+check_usdz.py)
+    # The last with Pixar's checker of archives for phones.
+    environment usdz usd-core==26.5 numpy==2.4.6
+    exec "$clients/usdz/bin/python" -B "$here/$command" "$@"
+    ;;
 check_blender.py | check_blender_vdb.py)
     environment bpy bpy==5.0.1 numpy==1.26.4
     exec "$clients/bpy/bin/python" -B "$here/$command" "$@"
