@@ -23,7 +23,8 @@ little differently; note: good to know), where it is, what is wrong, what to do,
 may be anyone's; payloads, references, sublayers and grids beside them are read too, and every variant
 is looked at. Strands and grids of several files are held against each other.
 
-Ends with 0 if there are no errors, 1 if there are some or a file is broken, 2 if one cannot be read.")]
+Ends with 0 if there are no errors, 1 if there are some or a file is broken or not there, 2 if one
+cannot be read.")]
 pub(super) struct Args {
     /// .usda, .usdc, .usd, .usdz and .vdb files.
     #[arg(required_unless_present = "explain", value_name = "FILE")]

@@ -32,6 +32,8 @@ fn exit_codes_are_those_of_the_table() {
         fs::write(folder.path().join(name), text).unwrap();
     }
     fs::write(folder.path().join("torn.usda"), "#usda 1.0\ndef {").unwrap();
+    // Opening a folder works, reading it fails.
+    fs::create_dir(folder.path().join("folder.usda")).unwrap();
     for (arguments, code) in [
         (&["good.usda"][..], 0),
         (&["odd.usda"], 0),
@@ -40,7 +42,8 @@ fn exit_codes_are_those_of_the_table() {
         (&["bad.usda", "--profile", "blender"], 0),
         (&["torn.usda"], 1),
         (&["good.usda", "--profile", "maxwell"], 1),
-        (&["gone.usda"], 2),
+        (&["gone.usda"], 1),
+        (&["folder.usda"], 2),
         (&["--explain", "C07"], 0),
         (&["--explain", "C77"], 1),
     ] {
