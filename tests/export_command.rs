@@ -129,7 +129,7 @@ fn layers_of_the_coat_that_are_left_out_are_said() {
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success(), "{said}");
     assert!(
-        said.contains("warning: layer") && said.contains("left out"),
+        said.contains("layers of the coat are left out") && said.contains("paws"),
         "{said}"
     );
 }

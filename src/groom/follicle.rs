@@ -8,6 +8,7 @@
 //! the first of more.
 
 use super::GroomError;
+use super::vary::Varied;
 use crate::progress::{Cancel, Progress};
 use crate::sampling::{Rng, hash64};
 use crate::skin::Skin;
@@ -18,6 +19,9 @@ use std::borrow::Cow;
 /// Least distance of two points over that of a hexagonal packing of as many. Random darts fill up
 /// at 0.78; the closer to that, the more darts miss (12 for a hit at 0.68, more than 100 at 0.76).
 const PACKING: f64 = 0.68;
+
+/// Below this share of the distance that they should have, points are crowded.
+const CROWDED: f64 = 0.75;
 
 /// The radius follows the number of points in steps of this share; small steps keep prefixes even.
 const STEP: usize = 8;
@@ -50,6 +54,8 @@ pub(super) struct Root {
     pub(super) combing: Vec3,
     /// Factor on length.
     pub(super) length: f32,
+    /// What else varies over the skin.
+    pub(super) vary: Varied,
 }
 
 /// The skin as something to throw darts at, uniformly by area times density factor.
@@ -149,6 +155,7 @@ impl<'a> Surface<'a> {
                 .try_normalize()
                 .unwrap_or_else(|| normal.any_orthonormal_vector()),
             length: self.blend(follicle, &self.skin.length),
+            vary: Varied::NONE,
         }
     }
 
@@ -204,10 +211,11 @@ impl<'a> Surface<'a> {
         count: usize,
         progress: &dyn Progress,
         cancel: &Cancel,
-    ) -> Result<Vec<Follicle>, GroomError> {
+    ) -> Result<Scattered, GroomError> {
         let mut taken: Vec<Follicle> = Vec::with_capacity(count.min(1 << 20));
         let mut grid = Grid::default();
         let (mut next_dart, mut slack) = (0u64, 1.0);
+        let mut crowded = None;
         while taken.len() < count {
             if cancel.is_cancelled() {
                 return Err(GroomError::Cancelled);
@@ -236,11 +244,40 @@ impl<'a> Surface<'a> {
             // Thin or folded skin can be full before its area says so.
             if hits * 100 < goal && taken.len() < goal {
                 slack *= 0.95;
+                if slack < CROWDED {
+                    crowded.get_or_insert(taken.len());
+                }
             }
             progress.advance(hits.min(count.saturating_sub(before)) as u64);
         }
         taken.truncate(count);
-        Ok(taken)
+        Ok(Scattered {
+            crowded: count.saturating_sub(crowded.unwrap_or(count)),
+            follicles: taken,
+        })
+    }
+}
+
+/// Points on the skin.
+pub(super) struct Scattered {
+    /// In their order: of these any first ones are evenly spread too.
+    pub(super) follicles: Vec<Follicle>,
+    /// How many of them, the last ones, had no room at the distance that they should have.
+    crowded: usize,
+}
+
+impl Scattered {
+    /// What is to be said of follicles that stand closer than they should.
+    pub(super) fn crowding(&self, class: &str, skin: &Skin) -> Option<String> {
+        (self.crowded > 0).then(|| {
+            format!(
+                "{} of {} strands of `{class}` had no room and stand closer than evenly: skin `{}` lies \
+                 folded on itself or in several layers",
+                self.crowded,
+                self.follicles.len(),
+                skin.name
+            )
+        })
     }
 }
 

@@ -2,16 +2,22 @@
 
 mod clump;
 mod coat;
+mod cover;
 mod error;
 mod field;
 mod follicle;
+mod noise;
 mod plan;
 #[cfg(test)]
 mod shape_tests;
 mod strand;
 #[cfg(test)]
 mod tests;
+mod vary;
+#[cfg(test)]
+mod vary_tests;
 
+pub(crate) use cover::widenings;
 pub use error::GroomError;
 pub use plan::{DEFAULT_STRANDS, MAX_CLASSES, MAX_STRANDS};
 
@@ -20,11 +26,12 @@ use crate::skin::Skin;
 use crate::species::Species;
 use coat::Coat;
 use field::Field;
-use follicle::Surface;
+use follicle::{Follicle, Surface};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
 use strand::{CLASS_SHIFT, Grower};
+use vary::Variation;
 
 /// All strands. Strand `i` has control points `points[offsets[i]..offsets[i + 1]]`, at least two,
 /// root first; the curve is a Catmull-Rom spline pinned at both ends, through every point.
@@ -157,7 +164,7 @@ pub fn forecast(
 ///
 /// The result is a function of the arguments alone, not of the number of threads. A groom of fewer
 /// strands is a subset of one with more: same ids, same curves; only widths differ, to keep the
-/// coat opaque.
+/// coat opaque. Follicles that have no hair or no room are counted in its warnings.
 ///
 /// # Errors
 /// [`GroomError`]: nothing to grow or nowhere to grow it, or `cancel` was set.
@@ -202,7 +209,37 @@ pub fn grow(
         offsets: vec![0],
         ..Groom::default()
     };
-    for (class, follicles) in scattered.iter().enumerate() {
+    for (class, scattered) in scattered.iter().enumerate() {
+        let follicles = &scattered.follicles;
+        let variation = Variation::new(&species.classes[class].groom.vary, settings.seed);
+        let root_of = |follicle: &Follicle| {
+            let mut root = surface.root(follicle);
+            root.vary = variation.at(root.position, surface.uv(follicle));
+            root
+        };
+        let diameter = species.classes[class].groom.diameter_um;
+        let shortest = (diameter * 1e-3 / species.classes[class].groom.length_mm) as f32;
+        let fates: Vec<Fate> = (follicles.par_iter().enumerate())
+            .with_min_len(1024)
+            .map(|(rank, follicle)| {
+                let root = root_of(follicle);
+                if root.length * root.vary.length <= shortest {
+                    Fate::Short
+                } else if !variation.grows(id_of(class, rank), root.vary.density) {
+                    Fate::Sparse
+                } else {
+                    Fate::Grown
+                }
+            })
+            .collect();
+        let grown = fates.iter().enumerate().filter(|(_, f)| **f == Fate::Grown);
+        let ranks: Vec<u32> = grown.map(|(rank, _)| rank as u32).collect();
+        groom
+            .warnings
+            .extend(missing(&groom.classes[class], &fates));
+        groom
+            .warnings
+            .extend(scattered.crowding(&groom.classes[class], skin));
         let width_scale = plan[class].width_scale;
         let grower = Grower::new(
             &species.classes[class].groom,
@@ -215,25 +252,25 @@ pub fn grow(
         let start = groom.points.len();
         groom
             .points
-            .resize(start + per_strand * follicles.len(), Vec3::ZERO);
+            .resize(start + per_strand * ranks.len(), Vec3::ZERO);
         groom.widths.resize(groom.points.len(), 0.0);
         let first = groom.normal.len();
-        groom.normal.resize(first + follicles.len(), Vec3::ZERO);
-        groom.coat.resize(first + follicles.len(), 0);
+        groom.normal.resize(first + ranks.len(), Vec3::ZERO);
+        groom.coat.resize(first + ranks.len(), 0);
         groom.points[start..]
             .par_chunks_mut(per_strand)
             .zip(groom.widths[start..].par_chunks_mut(per_strand))
             .zip(groom.normal[first..].par_iter_mut())
             .zip(groom.coat[first..].par_iter_mut())
-            .zip(follicles.par_iter().enumerate())
+            .zip(ranks.par_iter().enumerate())
             .with_min_len(1024)
-            .for_each(|((((points, widths), normal), part), (rank, follicle))| {
-                if rank % 1024 == 0 {
-                    progress.advance(1024.min(follicles.len() - rank) as u64);
+            .for_each(|((((points, widths), normal), part), (index, &rank))| {
+                if index % 1024 == 0 {
+                    progress.advance(1024.min(ranks.len() - index) as u64);
                 }
-                let id = (class as u32) << CLASS_SHIFT | rank as u32;
+                let id = id_of(class, rank as usize);
                 if !cancel.is_cancelled() {
-                    let mut root = surface.root(follicle);
+                    let mut root = root_of(&follicles[rank as usize]);
                     if let Some(coat) = &coat {
                         let (zone, hair) = coat.choose(id, root.position, root.normal);
                         *part = zone;
@@ -245,11 +282,12 @@ pub fn grow(
         if cancel.is_cancelled() {
             return Err(GroomError::Cancelled);
         }
-        for (rank, follicle) in follicles.iter().enumerate() {
-            let end = start + (rank + 1) * per_strand;
+        for (index, &rank) in ranks.iter().enumerate() {
+            let follicle = &follicles[rank as usize];
+            let end = start + (index + 1) * per_strand;
             groom.offsets.push(end as u32);
             groom.class.push(class as u8);
-            groom.id.push((class as u32) << CLASS_SHIFT | rank as u32);
+            groom.id.push(id_of(class, rank as usize));
             groom.root_uv.push(surface.uv(follicle));
             let (triangle, barycentric) = surface.place(follicle);
             groom.root_triangle.push(triangle);
@@ -261,6 +299,43 @@ pub fn grow(
     }
     progress.finish();
     Ok(groom)
+}
+
+/// The id of a strand.
+fn id_of(class: usize, rank: usize) -> u32 {
+    (class as u32) << CLASS_SHIFT | rank as u32
+}
+
+/// What becomes of a follicle.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Fate {
+    /// A hair.
+    Grown,
+    /// None: it would be shorter than it is thick.
+    Short,
+    /// None: fewer hairs grow here.
+    Sparse,
+}
+
+/// What is to be said of follicles that have no hair.
+fn missing(class: &str, fates: &[Fate]) -> Option<String> {
+    let count = |fate| fates.iter().filter(|f| **f == fate).count();
+    let (short, sparse) = (count(Fate::Short), count(Fate::Sparse));
+    let mut reasons = Vec::new();
+    if short > 0 {
+        reasons.push(format!("{short} would be shorter than thick"));
+    }
+    if sparse > 0 {
+        reasons.push(format!("{sparse} are where its density is less"));
+    }
+    let all = fates.len();
+    (!reasons.is_empty()).then(|| {
+        format!(
+            "{} of {all} strands of `{class}` did not grow: {}",
+            short + sparse,
+            reasons.join(", ")
+        )
+    })
 }
 
 fn arc_length(points: &[Vec3]) -> f32 {

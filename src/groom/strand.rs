@@ -197,16 +197,18 @@ impl<'a> Grower<'a> {
         let length = class.length_mm as f32
             * 1e-3
             * root.length
+            * root.vary.length
             * luck.length
             * (1.0 + DRIFT_LENGTH * drift(0.0))
             * (1.0 + TUFT_LENGTH * lock.random[0]);
         let whole = length;
         let length = length.min(class.trim_mm as f32 * 1e-3);
-        let shared_turn = DRIFT_TURN * drift(40.0) + TUFT_LEAN * lock.random[1];
+        let shared_turn = root.vary.turn + DRIFT_TURN * drift(40.0) + TUFT_LEAN * lock.random[1];
         let shared_lift = 0.5 * TUFT_LEAN * lock.random[2];
 
         // Two curves: the hair by itself, and what it would be without straying from its tuft.
-        let emergence = class.emergence_deg.to_radians() as f32 * self.dry() + shared_lift;
+        let emergence = class.emergence_deg.to_radians() as f32 * root.vary.tilt;
+        let emergence = emergence * self.dry() + shared_lift;
         let lean = |turn: f32, lift: f32| Lean {
             combing: Quat::from_axis_angle(root.normal, turn) * root.combing,
             emergence: (emergence + lift).clamp(LOWEST, FRAC_PI_2),
@@ -217,7 +219,7 @@ impl<'a> Grower<'a> {
         let to_clump = tangential(clump.center - root.position);
         let to_lock = tangential(lock.center - root.position);
         // A shorter hair has less way to its neighbors.
-        let share = class.clump as f32 * root.length.min(1.0);
+        let share = (class.clump as f32 * root.vary.clump).min(1.0) * root.length.min(1.0);
         let share = share + 0.9 * class.wet as f32 * (1.0 - share);
         let pull = (share * (1.0 + 0.4 * clump.random[3])).clamp(0.0, 1.0);
         // Wet hair sticks to its neighbors, not to a whole lock.
@@ -227,7 +229,7 @@ impl<'a> Grower<'a> {
         let (mut hair, mut center) = (root.position, root.position);
         let step = length / (self.points() - 1) as f32;
         let crimp = Crimp::new(class, length, step, &luck);
-        let curl = Curl::new(class, step, clump.random[2]);
+        let curl = Curl::new(class, step, clump.random[2], root.vary.curl);
         let frizz = Frizz::new(class, root, &luck);
         points[0] = root.position;
         for k in 0..self.points() - 1 {
@@ -244,7 +246,7 @@ impl<'a> Grower<'a> {
             points[k + 1] = self.lift(point, root, zeta * length);
         }
         // Finer where it is shorter, as on faces and paws.
-        let finer = root.length.clamp(0.05, 1.0).powf(FINER);
+        let finer = root.length.clamp(0.05, 1.0).powf(FINER) * root.vary.width;
         for (width, profile) in widths.iter_mut().zip(&self.profile) {
             *width = profile * luck.width * finer;
         }
@@ -363,13 +365,13 @@ struct Curl {
 }
 
 impl Curl {
-    /// * `phase`: -1..1, of the clump.
-    fn new(class: &ClassGroom, step: f32, phase: f32) -> Self {
+    /// * `phase`: -1..1, of the clump. * `factor`: on the radius.
+    fn new(class: &ClassGroom, step: f32, phase: f32, factor: f32) -> Self {
         // As for the crimp: stretched along and across where points are too few.
         let natural = class.curl_pitch_mm as f32 * 1e-3;
         let pitch = natural.max(POINTS_PER_WAVE * step);
         Self {
-            radius: class.curl_mm as f32 * 1e-3 * (pitch / natural),
+            radius: class.curl_mm as f32 * 1e-3 * factor * (pitch / natural),
             wavenumber: TAU / pitch,
             phase: phase * 0.5 * TAU,
         }
@@ -397,7 +399,7 @@ impl Frizz {
     fn new(class: &ClassGroom, root: &Root, luck: &Luck) -> Self {
         Self {
             across: [root.combing.cross(root.normal), root.normal],
-            amplitude: class.frizz_mm as f32 * 1e-3,
+            amplitude: class.frizz_mm as f32 * 1e-3 * root.vary.frizz,
             phases: luck.frizz,
         }
     }

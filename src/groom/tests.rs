@@ -72,6 +72,7 @@ pub(super) fn fox() -> Species {
         wet: 0.0,
         clump: 0.2,
         clump_mm: 4.0,
+        vary: Vec::new(),
     };
     let under = ClassGroom {
         density_per_cm2: 9615.0,
@@ -253,7 +254,7 @@ fn strands_start_on_the_skin_and_leave_it() {
             let seed = follicle::class_seed(2, class as usize);
             let follicles = surface.scatter(seed, count, &Silent, &Cancel::default());
             let strands = (0..groom.strands()).filter(|&i| groom.class[i] == class);
-            for (i, follicle) in strands.zip(follicles.unwrap()) {
+            for (i, follicle) in strands.zip(follicles.unwrap().follicles) {
                 let root = surface.root(&follicle);
                 let strand = groom.strand(i);
                 assert_eq!(strand[0], root.position);

@@ -1,12 +1,15 @@
 //! Recipes: small files beside species files, read in the same two passes.
 
+use super::build::place_of;
 use super::check::{Checked, Value, check_table};
 use super::error::{Place, Problems, SpeciesErrors};
+use super::fields::CHANNELS;
 use super::shape::Shape;
 use super::tree;
-use crate::io::{FileError, read_bounded};
+use crate::io::{Channel, FileError, Picture, Space, read_bounded};
 use std::io::{Error, ErrorKind};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Longest recipe, bytes. The built-in ones have some kB.
 const FILE_LIMIT: u64 = 256 << 10;
@@ -57,6 +60,41 @@ pub(super) fn need(table: &Checked, key: &str, problems: &mut Problems) -> Optio
         missing(table, key, problems);
     }
     super::build::number(table, key)
+}
+
+/// The picture that the keys `file`, `channel` and `space` name.
+///
+/// * `space`: how a PNG is read if the table does not say it.
+/// * `folder`: where relative paths begin.
+pub(super) fn picture(
+    table: &Checked,
+    space: &str,
+    folder: &Path,
+    problems: &mut Problems,
+) -> Option<Arc<Picture>> {
+    let Some(file) = text(table, "file") else {
+        if table.get("file").is_none() {
+            missing(table, "file", problems);
+        }
+        return None;
+    };
+    let channel = match word(table, "channel") {
+        Some(name) => CHANNELS.iter().position(|c| c.name == name)?,
+        None => 0,
+    };
+    let space = match word(table, "space").unwrap_or(space) {
+        "linear" => Space::Linear,
+        _ => Space::Srgb,
+    };
+    match Picture::read(&folder.join(file), Channel::ALL[channel], space) {
+        Ok(picture) => Some(Arc::new(picture)),
+        Err(error) => {
+            let hint = "the path of a map is relative to this file".to_owned();
+            let message = format!("`{}`: {error}", table.path_of("file"));
+            problems.push(place_of(table, "file"), message, Some(hint));
+            None
+        }
+    }
 }
 
 /// Reports a key that has to be there, unless it is under another spelling.

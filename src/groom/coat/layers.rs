@@ -4,6 +4,7 @@ use super::net::Net;
 use super::turing::{self, Diffusion, POINTS_A_WAVE, Wanted};
 use super::{GroomError, Shares};
 use crate::groom::follicle::{Follicle, Surface};
+use crate::groom::noise::Fractal;
 use crate::math::ease::smoothstep;
 use crate::progress::Cancel;
 use crate::sampling::hash64;
@@ -12,9 +13,8 @@ use crate::species::{
     CoatLayer, CoatLimit, CoatPattern, CoatRecipe, Extent, Join, Lay, MAX_ZONES, Side, Turing,
 };
 use glam::Vec3;
-use noise::{NoiseFn, OpenSimplex};
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 /// Wavelength of the spots that a rosette's ring breaks into, over that of the rosettes.
@@ -74,17 +74,17 @@ impl<'a> Painter<'a> {
         let mut bare = [0.0; MAX_ZONES + 1];
         bare[0] = 1.0;
         let mut shares = vec![bare; self.net.len()];
-        for (index, layer) in recipe.layers.iter().enumerate() {
-            let unknown = layer.limits.iter().find_map(|limit| match limit.extent {
-                Extent::Near { landmark, .. } if self.places(landmark).is_none() => Some(landmark),
-                _ => None,
+        let mut left_out = 0;
+        let mut unknown = BTreeSet::new();
+        for layer in &recipe.layers {
+            let near = layer.limits.iter().filter_map(|limit| match limit.extent {
+                Extent::Near { landmark, .. } => Some(landmark),
+                Extent::Facing { .. } => None,
             });
-            if let Some(landmark) = unknown {
-                let name = landmark.name();
-                warnings.push(format!(
-                    "layer {index} of the coat is left out: where skin `{}` has its {name} is not known",
-                    self.skin.name
-                ));
+            let nowhere: Vec<_> = near.filter(|l| self.places(*l).is_none()).collect();
+            if !nowhere.is_empty() {
+                left_out += 1;
+                unknown.extend(nowhere);
                 continue;
             }
             let limits = self.limits(&layer.limits);
@@ -96,6 +96,15 @@ impl<'a> Painter<'a> {
                 }
                 shares[layer.zone] += painted;
             }
+        }
+        if left_out > 0 {
+            let names: Vec<&str> = unknown.into_iter().map(Landmark::name).collect();
+            warnings.push(format!(
+                "{left_out} of {} layers of the coat are left out: where skin `{}` has its {} is not known",
+                recipe.layers.len(),
+                self.skin.name,
+                names.join(", ")
+            ));
         }
         Ok(shares)
     }
@@ -147,11 +156,12 @@ impl<'a> Painter<'a> {
                     [within_mm, soft_mm, ragged_mm].map(|mm| mm as f32 * self.scale);
                 let half = (0.5 * soft).max(1e-6);
                 // Bays and tongues are some times as long as they are deep.
-                let stray = self.noise(hash64(landmark as u64), 5.0 * ragged.max(1e-3), 0.35);
+                let size = 5.0 * ragged.max(1e-3);
+                let stray = self.noise(hash64(landmark as u64), size, 0.35);
                 let distance = self.distance(landmark);
                 (0..self.net.len())
                     .map(|i| {
-                        let at = distance[i] + ragged * stray(self.net.positions[i]);
+                        let at = distance[i] + ragged * stray.at(self.net.positions[i]);
                         1.0 - smoothstep(within - half, within + half, at)
                     })
                     .collect()
@@ -172,24 +182,9 @@ impl<'a> Painter<'a> {
         }
     }
 
-    /// Fractal noise, about -1..1.
-    ///
-    /// * `size`: of its largest features, meters.
-    /// * `rough`: how much finer features add, 0..1.
-    fn noise(&self, seed: u64, size: f32, rough: f64) -> impl Fn(Vec3) -> f32 {
-        let noise = OpenSimplex::new(hash64(self.seed ^ hash64(seed)) as u32);
-        move |p: Vec3| {
-            let p = p.as_dvec3() / f64::from(size);
-            let (mut sum, mut all, mut weight, mut scale) = (0.0, 0.0, 1.0, 1.0);
-            for octave in 0..4 {
-                let at = p * scale + f64::from(octave) * 17.0;
-                sum += weight * noise.get(at.to_array());
-                all += weight;
-                weight *= rough;
-                scale *= 2.0;
-            }
-            (1.6 * sum / all) as f32
-        }
+    /// Fractal noise; `size` and `rough` as of [`Fractal::new`].
+    fn noise(&self, seed: u64, size: f32, rough: f64) -> Fractal {
+        Fractal::new(hash64(self.seed ^ hash64(seed)), size, rough)
     }
 
     /// The pattern at each point, 0..1. `None` if canceled.
@@ -217,7 +212,7 @@ impl<'a> Painter<'a> {
             } => {
                 let size = *size_mm as f32 * self.scale;
                 let noise = self.noise(layer.seed ^ 0x7061_7463, 0.7 * size, *rough);
-                let field: Vec<f32> = self.net.positions.iter().map(|&p| noise(p)).collect();
+                let field: Vec<f32> = self.net.positions.iter().map(|&p| noise.at(p)).collect();
                 bordered(&field, Some(*cover), 0.0, edge)
             }
             CoatPattern::Map { picture } => {

@@ -61,7 +61,7 @@ impl Coat {
         let mut warnings = Vec::new();
         let (count, spacing) = points(surface.weighted_area(), recipe, scale, &mut warnings);
         let seed = hash64(seed ^ 0x636f_6174);
-        let follicles = surface.scatter(seed, count, &Silent, cancel)?;
+        let follicles = surface.scatter(seed, count, &Silent, cancel)?.follicles;
         let net = Net::new(&surface, &follicles, spacing);
         let painter = layers::Painter::new(skin, &surface, &follicles, &net, scale, seed);
         let shares = painter.paint(recipe, &mut warnings, cancel)?;

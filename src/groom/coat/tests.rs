@@ -186,7 +186,8 @@ fn distances_go_round_the_body() {
     let spacing = (surface.weighted_area() / 5_000.0 / 0.866).sqrt() as f32;
     let follicles = surface
         .scatter(1, 5_000, &Silent, &Cancel::default())
-        .unwrap();
+        .unwrap()
+        .follicles;
     let net = Net::new(&surface, &follicles, spacing);
     let top = 0.08 * Vec3::Y;
     let distances = net.distances(&[top]);
@@ -220,7 +221,8 @@ fn extreme_settings_stay_finite() {
     let surface = Surface::even(&skin).unwrap();
     let follicles = surface
         .scatter(1, 2_000, &Silent, &Cancel::default())
-        .unwrap();
+        .unwrap()
+        .follicles;
     let spacing = (surface.weighted_area() / 2_000.0 / 0.866).sqrt() as f32;
     let net = Net::new(&surface, &follicles, spacing);
     let scale = vec![1.0; net.len()];

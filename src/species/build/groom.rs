@@ -13,6 +13,7 @@ impl Reader<'_> {
         self.length(table);
         self.profile(table);
         self.crimp(table);
+        let vary = self.vary(table);
         Some(ClassGroom {
             density_per_cm2: number(table, "density_per_cm2")?,
             length_mm: number(table, "length_mm")?,
@@ -35,6 +36,7 @@ impl Reader<'_> {
             wet: number(table, "wet").unwrap_or(0.0),
             clump: number(table, "clump")?,
             clump_mm: number(table, "clump_mm")?,
+            vary,
         })
     }
 

@@ -7,6 +7,7 @@ mod medulla;
 mod modeled;
 mod pigment;
 mod structure;
+mod vary;
 
 use super::check::{Checked, Item, Value};
 use super::coat::{CoatRecipe, coat_of};
@@ -242,6 +243,6 @@ fn texts(parent: &Checked, key: &str) -> Vec<String> {
 }
 
 /// Where a key was written, or its table.
-pub(super) fn place_of<'a>(parent: &'a Checked, key: &str) -> &'a Place {
+pub(crate) fn place_of<'a>(parent: &'a Checked, key: &str) -> &'a Place {
     parent.get(key).map_or(&parent.place, |i| &i.place)
 }

@@ -1,6 +1,6 @@
 //! The fields of a coat recipe.
 
-use crate::species::fields::{BAND, number};
+use crate::species::fields::{BAND, CHANNELS, SPACES, choice, number};
 use crate::species::shape::{Choice, Field, Kind, Shape};
 
 /// The whole file.
@@ -213,19 +213,6 @@ const LAYS: &[Choice] = &[
     },
 ];
 
-pub(super) const CHANNELS: &[Choice] = &[
-    choice("luminance", "brightness of the color"),
-    choice("red", "the red channel"),
-    choice("green", "the green channel"),
-    choice("blue", "the blue channel"),
-    choice("alpha", "the opacity"),
-];
-
-const SPACES: &[Choice] = &[
-    choice("srgb", "a picture: values are decoded"),
-    choice("linear", "a map of numbers: values are taken as they are"),
-];
-
 static LIMIT: Shape = Shape {
     name: "limit",
     doc: "A part of the body: either `near` a landmark or `facing` a direction.",
@@ -314,11 +301,3 @@ pub(crate) const COATS: &[Choice] = &[
     choice("siamese", "dark face, ears, paws and tail on a pale body"),
     choice("tortoiseshell", "black and orange patches with some white"),
 ];
-
-const fn choice(name: &'static str, doc: &'static str) -> Choice {
-    Choice {
-        name,
-        doc,
-        keys: &[],
-    }
-}

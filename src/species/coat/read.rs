@@ -1,19 +1,17 @@
 //! Reading a coat recipe: the same two passes as for species files.
 
-use super::fields::{CHANNELS, COAT};
+use super::fields::COAT;
 use super::{
     CoatLayer, CoatLimit, CoatPattern, CoatRecipe, CoatZone, Extent, Join, Lay, Side, Turing,
     library,
 };
-use crate::io::{Channel, Picture, Space};
 use crate::skin::Landmark;
 use crate::species::build::{Reader, number, tables};
 use crate::species::check::{Checked, Value};
 use crate::species::error::{Problems, SpeciesError, SpeciesErrors, closest, suggestion};
 use crate::species::model::PigmentBand;
-use crate::species::recipe::{self, missing, need, text, word};
+use crate::species::recipe::{self, need, picture, text, word};
 use std::path::Path;
-use std::sync::Arc;
 
 /// The coat of that name, or in the file at that path if it ends in `.toml`; and the text of it.
 ///
@@ -163,36 +161,11 @@ fn pattern(table: &Checked, folder: &Path, problems: &mut Problems) -> Option<Co
             cover: number(table, "cover").unwrap_or(0.5),
             rough: number(table, "rough").unwrap_or(0.4),
         },
-        "map" => map(table, folder, problems)?,
+        "map" => CoatPattern::Map {
+            picture: picture(table, "srgb", folder, problems)?,
+        },
         _ => CoatPattern::Plain,
     })
-}
-
-fn map(table: &Checked, folder: &Path, problems: &mut Problems) -> Option<CoatPattern> {
-    let Some(file) = text(table, "file") else {
-        missing(table, "file", problems);
-        return None;
-    };
-    let channel = match word(table, "channel") {
-        Some(name) => CHANNELS.iter().position(|c| c.name == name)?,
-        None => 0,
-    };
-    let space = match word(table, "space") {
-        Some("linear") => Space::Linear,
-        _ => Space::Srgb,
-    };
-    match Picture::read(&folder.join(file), Channel::ALL[channel], space) {
-        Ok(picture) => Some(CoatPattern::Map {
-            picture: Arc::new(picture),
-        }),
-        Err(error) => {
-            let place = table.get("file").map_or(&table.place, |i| &i.place);
-            let hint = "the path of a map is relative to this file".to_owned();
-            let message = format!("`{}`: {error}", table.path_of("file"));
-            problems.push(place, message, Some(hint));
-            None
-        }
-    }
 }
 
 fn extent(table: &Checked, problems: &mut Problems) -> Option<Extent> {

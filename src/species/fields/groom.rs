@@ -1,6 +1,7 @@
 //! The fields of how a hair class grows.
 
 use super::number;
+use super::vary::VARY;
 use crate::species::shape::{Field, Kind, Shape};
 
 pub(super) static GROOM: Shape = Shape {
@@ -113,6 +114,11 @@ pub(super) static GROOM: Shape = Shape {
             "clump_mm",
             Kind::Number(number(0.01, 100.0, "mm")),
             "Size of a clump.",
+        ),
+        Field::optional(
+            "vary",
+            Kind::Tables(&VARY, 16),
+            "What of this is not the same everywhere; factors of several join.",
         ),
     ],
 };

@@ -6,9 +6,11 @@ mod materials;
 mod medulla;
 mod mesh;
 mod structure;
+mod vary;
 
 pub(crate) use cuticle::PATTERNS;
 pub(crate) use medulla::MEDULLAE;
+pub(crate) use vary::{CHANNELS, SPACES, VARIED, choice};
 
 use super::coat::COATS;
 use super::shape::{Field, Kind, Range, Shape};

@@ -3,9 +3,11 @@
 
 mod mesh;
 mod structure;
+mod vary;
 
 pub use mesh::*;
 pub use structure::*;
+pub use vary::*;
 
 use super::coat::CoatRecipe;
 use serde::Serialize;
@@ -174,4 +176,7 @@ pub struct ClassGroom {
     pub clump: f64,
     /// Size of a clump, millimeters.
     pub clump_mm: f64,
+    /// What of this is not the same everywhere.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub vary: Vec<Vary>,
 }

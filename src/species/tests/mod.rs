@@ -5,6 +5,7 @@ mod overrides;
 mod presets;
 mod reports;
 mod rules;
+mod vary;
 
 use super::*;
 
