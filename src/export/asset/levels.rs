@@ -1,6 +1,6 @@
 //! Levels of detail: each is a part of the one before.
 
-use crate::groom::{Groom, GroomError, forecast};
+use crate::groom::{self, Groom, GroomError, forecast};
 use crate::skin::Skin;
 use crate::species::Species;
 use std::sync::Arc;
@@ -35,7 +35,8 @@ pub struct LevelClass {
     pub widening: f32,
 }
 
-/// So many levels of a groom, the finest first; fewer if there are too few strands for them.
+/// So many levels of a groom, the finest first; fewer if there are too few strands for them. All cover as
+/// much as the first.
 ///
 /// # Errors
 /// Those of [`forecast`]: the groom is not of this skin and species.
@@ -45,16 +46,25 @@ pub fn levels(
     species: &Species,
     count: usize,
 ) -> Result<Vec<Level>, GroomError> {
-    let mut levels = Vec::new();
+    let mut parts = Vec::new();
     let mut strands = groom.strands();
-    for name in NAMES.into_iter().take(count.max(1)) {
+    for _ in NAMES.into_iter().take(count.max(1)) {
         if strands < groom.classes.len().max(1) {
             break;
         }
-        levels.push(level(groom, skin, species, name, strands)?);
+        let plan = forecast(skin, species, Some(strands))?;
+        parts.push(plan.classes.iter().map(|c| c.strands).collect::<Vec<_>>());
         strands /= SHARE;
     }
-    Ok(levels)
+    let thinner = parts.get(1..).unwrap_or_default();
+    let mut widenings = vec![vec![1.0; groom.classes.len()]];
+    if !thinner.is_empty() {
+        widenings.extend(groom::widenings(groom, skin, thinner));
+    }
+    let levels = NAMES.into_iter().zip(parts.iter().zip(widenings));
+    Ok(levels
+        .map(|(name, (kept, widenings))| level(groom, name, kept, &widenings))
+        .collect())
 }
 
 /// The strands that stand for the coat in viewports.
@@ -86,33 +96,23 @@ pub(super) fn guides(full: &Level) -> LevelClass {
     }
 }
 
-fn level(
-    groom: &Groom,
-    skin: &Skin,
-    species: &Species,
-    name: &'static str,
-    strands: usize,
-) -> Result<Level, GroomError> {
-    let plan = forecast(skin, species, Some(strands))?;
+/// * `kept`: strands of each class; `widenings`: factors on their widths.
+fn level(groom: &Groom, name: &'static str, kept: &[usize], widenings: &[f32]) -> Level {
     // Strands are sorted by class, then by rank: those of lowest rank are an even part of the coat.
     let mut ranks = vec![Vec::new(); groom.classes.len()];
     for (index, &class) in groom.class.iter().enumerate() {
-        let (ranks, wanted) = (
-            &mut ranks[usize::from(class)],
-            plan.classes[usize::from(class)].strands,
-        );
-        if ranks.len() < wanted {
+        let ranks = &mut ranks[usize::from(class)];
+        if ranks.len() < kept[usize::from(class)] {
             ranks.push(index as u32);
         }
     }
-    let scales = plan.classes.iter().zip(&groom.width_scale);
-    Ok(Level {
+    Level {
         name,
-        classes: (ranks.into_iter().zip(scales))
-            .map(|(ranks, (class, full))| LevelClass {
+        classes: (ranks.into_iter().zip(widenings))
+            .map(|(ranks, &widening)| LevelClass {
                 strands: ranks.into(),
-                widening: class.width_scale / full,
+                widening,
             })
             .collect(),
-    })
+    }
 }

@@ -1,0 +1,95 @@
+//! Levels of detail: thinner coats are part of fuller ones and cover as much of a picture.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use glam::Vec3;
+use std::collections::HashSet;
+use vair::bsdf::HairMaterial;
+use vair::export::asset::{Level, levels};
+use vair::groom::{Groom, GroomSettings, grow};
+use vair::progress::{Cancel, Silent};
+use vair::render::{Filter, RenderJob, Sampler};
+use vair::scene::{Backdrop, Environment, Scene, SceneParts, View};
+use vair::skin::{self, Skin};
+use vair::species::{self, Species};
+
+fn grown(skin: &Skin, species: &Species, strands: usize) -> Groom {
+    let settings = GroomSettings {
+        strands: Some(strands),
+        seed: 0,
+    };
+    grow(skin, species, &settings, &Silent, &Cancel::default()).unwrap()
+}
+
+/// A groom of which a level alone is seen, as wide as the level has it. The other strands stay without a
+/// width, so that the camera, which frames all strands, stands where it stood.
+fn alone(groom: &Groom, level: &Level) -> Groom {
+    let mut part = groom.clone();
+    part.widths.fill(1e-12);
+    for class in &level.classes {
+        for &i in class.strands.iter() {
+            let i = i as usize;
+            for k in groom.offsets[i] as usize..groom.offsets[i + 1] as usize {
+                part.widths[k] = groom.widths[k] * class.widening;
+            }
+        }
+    }
+    part
+}
+
+/// Share of a picture in which hair is seen, not the skin and not what is behind.
+fn coverage(groom: &Groom, skin: &Skin) -> f64 {
+    let view = View {
+        zoom: 0.85,
+        yaw_deg: 25.0,
+        ..View::from_direction(skin.view)
+    };
+    let scene = Scene::build(SceneParts {
+        groom,
+        // Black hair on white skin before nothing.
+        materials: vec![HairMaterial::Isotropic(Vec3::ZERO); groom.classes.len()],
+        skin: Some((skin, Vec3::ONE)),
+        environment: Environment::white(),
+        backdrop: Backdrop::Environment,
+        ground: None,
+        view,
+    })
+    .unwrap();
+    let job = RenderJob {
+        resolution: [96, 72],
+        spp: 16,
+        sampler: Sampler::Bsdf,
+        filter: Filter::Box,
+        ..RenderJob::default()
+    };
+    let film = job.run(&scene, &Silent, &Cancel::default()).unwrap();
+    let pixels = film.pixels.iter();
+    let hair = pixels.map(|p| f64::from(p.alpha - p.albedo.x));
+    hair.sum::<f64>() / film.pixels.len() as f64
+}
+
+#[test]
+fn levels_nest_and_cover_as_much() {
+    for (name, on, strands) in [
+        ("red-fox", "ball", 30_000),
+        ("polar-bear", "swatch", 20_000),
+    ] {
+        let skin = skin::load(on).unwrap();
+        let species = species::load(name, &[]).unwrap();
+        let full = grown(&skin, &species, strands);
+        let all = coverage(&full, &skin);
+        assert!(all > 0.1, "{all}: nothing to tell");
+        let levels = levels(&full, &skin, &species, 3).unwrap();
+        assert_eq!(levels.len(), 3);
+        let mut finer: HashSet<u32> = full.id.iter().copied().collect();
+        for level in &levels {
+            let strands = level.classes.iter().flat_map(|c| c.strands.iter());
+            let here: HashSet<u32> = strands.map(|&i| full.id[i as usize]).collect();
+            assert!(here.is_subset(&finer), "{name} {}", level.name);
+            finer = here;
+            let share = coverage(&alone(&full, level), &skin) / all;
+            println!("{name} on {on}, {}: {share:.3} of {all:.3}", level.name);
+            assert!((share - 1.0).abs() < 0.05, "{name} {}: {share}", level.name);
+        }
+    }
+}
