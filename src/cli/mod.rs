@@ -12,6 +12,7 @@ mod convert;
 mod export;
 mod failure;
 mod fiber;
+mod figure;
 mod gallery;
 mod grids;
 mod merge;
@@ -65,6 +66,8 @@ enum Command {
     Cache(cache::Args),
     /// The library in pictures: a contact sheet, or pages of Markdown.
     Gallery(gallery::Args),
+    /// Figures from recipes: several pictures on one sheet, such as those of the paper.
+    Figure(figure::Args),
     /// Print the JSON Schema of a file format.
     Schema(schema::Args),
 }
@@ -120,6 +123,7 @@ fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
         Command::Bake(args) => bake::run(&args, console),
         Command::Merge(args) => merge::run(&args, console),
         Command::Cache(args) => cache::run(&args, console),
+        Command::Figure(args) => figure::run(&args, console),
         Command::Convert(args) => convert::run(&args, console),
     }
 }

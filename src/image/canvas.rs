@@ -3,10 +3,13 @@
 //! Coordinates are pixels, x to the right, y down; pixel centers are at half-integers.
 
 use super::write_png;
-use crate::io::FileError;
+use crate::io::{FileError, read_bounded};
 use font8x8::UnicodeFonts;
 use glam::{Vec2, Vec3};
 use std::path::Path;
+
+/// Largest file read, bytes.
+const FILE_LIMIT: u64 = 1 << 30;
 
 /// Height of a line of text at scale 1, pixels.
 pub const GLYPH_HEIGHT: f32 = 8.0;
@@ -32,6 +35,35 @@ impl Canvas {
             height,
             pixels: vec![color; width * height],
         }
+    }
+
+    /// Reads an 8-bit PNG with three channels, as [`Canvas::write_png`] writes it.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or of another kind.
+    pub fn read_png(path: &Path) -> Result<Self, FileError> {
+        let bytes = read_bounded(path, FILE_LIMIT)?;
+        let fail = |what: String| {
+            let reason = std::io::Error::new(std::io::ErrorKind::InvalidData, what);
+            FileError::new("read", path, reason)
+        };
+        let decode = |bytes: &[u8]| {
+            let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info()?;
+            let mut data = vec![0; reader.output_buffer_size().unwrap_or(0)];
+            Ok::<_, png::DecodingError>((reader.next_frame(&mut data)?, data))
+        };
+        let (info, data) = decode(&bytes).map_err(|e| fail(e.to_string()))?;
+        if (info.color_type, info.bit_depth) != (png::ColorType::Rgb, png::BitDepth::Eight) {
+            return Err(fail("it is not of three channels of 8 bits".to_owned()));
+        }
+        let pixels = data[..info.buffer_size()].as_chunks::<3>().0;
+        Ok(Self {
+            width: info.width as usize,
+            height: info.height as usize,
+            pixels: (pixels.iter())
+                .map(|rgb| Vec3::from_array(rgb.map(|v| f32::from(v) / 255.0)))
+                .collect(),
+        })
     }
 
     /// Width in pixels.
@@ -174,6 +206,21 @@ mod tests {
         canvas.fill_rect(Vec2::new(2.25, 3.5), Vec2::new(10.75, 7.25), Vec3::ONE);
         let sum: f32 = (0..400).map(|i| canvas.get(i % 20, i / 20).x).sum();
         assert!((sum - 8.5 * 3.75).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_picture_comes_back_from_its_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let mut canvas = Canvas::new(5, 3, Vec3::new(0.2, 0.4, 1.0));
+        canvas.set(4, 0, Vec3::X);
+        canvas.write_png(&path).unwrap();
+        let back = Canvas::read_png(&path).unwrap();
+        assert_eq!((back.width(), back.to_rgb8()), (5, canvas.to_rgb8()));
+        canvas.write_small_png(&path, 16).unwrap();
+        assert!(Canvas::read_png(&path).is_err());
+        std::fs::write(&path, b"no picture").unwrap();
+        assert!(Canvas::read_png(&path).is_err());
     }
 
     #[test]
