@@ -46,6 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 species: &fox,
                 levels: &levels,
                 looks: &[],
+                coats: &[],
                 seed: 0,
             };
             Ok(write(&path, &parts, &settings, &Silent, &cancel)?)

@@ -85,6 +85,7 @@ fn asset(path: &Path, groom: &Groom, species: &Species, ground: &Ground, looks: 
         species,
         levels: &levels,
         looks,
+        coats: &[],
         seed: 0,
     };
     let settings = AssetSettings {

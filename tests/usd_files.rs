@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use vair::assembly::looks;
 use vair::bake::Settings;
 use vair::export::asset::{
-    AssetSettings, Curves, Frame, Parts, Profile, Reader, Units, Up, levels, write,
+    AssetSettings, Curves, Frame, Parts, Profile, Reader, Units, Up, Wear, levels, write,
 };
 use vair::groom::{Groom, GroomSettings, grow};
 use vair::progress::{Cancel, Silent};
@@ -62,6 +62,7 @@ fn export(name: &str, species: &str, skin: &str, count: usize, settings: &AssetS
         species: &species,
         levels: &levels,
         looks: &looks,
+        coats: &[],
         seed: 5,
     };
     let folder = folder();
@@ -131,6 +132,62 @@ fn all_kinds_of_curves() {
             ..AssetSettings::default()
         };
         export(name, "human", "tress", 2, &settings);
+    }
+}
+
+/// A choice of coats beside each coat by itself, which it must equal: two that are of one shape, and one
+/// whose hair is longer.
+#[test]
+fn coats_to_choose_from() {
+    let skin = skin::load("ball").unwrap();
+    let bake = Settings {
+        photons: 20_000,
+        face: 16,
+        ..Settings::cone()
+    };
+    let (progress, cancel) = (&Silent, &Cancel::default());
+    let folder = folder();
+    for (file, names) in [
+        ("coats", &["tabby", "siamese", "none"][..]),
+        ("shape", &["siamese", "tortoiseshell"]),
+    ] {
+        let dressed: Vec<_> = (names.iter())
+            .map(|name| {
+                let mut cat = species::load("cat", &[]).unwrap();
+                cat.wear(name).unwrap();
+                let groom = grown(&skin, &cat, STRANDS);
+                let looks = looks(&cat, &bake, None, progress, cancel).unwrap();
+                (cat, groom, looks)
+            })
+            .collect();
+        let levels = levels(&dressed[0].1, &skin, &dressed[0].0, 2).unwrap();
+        let wears: Vec<Wear<'_>> = (names.iter().zip(&dressed))
+            .map(|(name, (species, groom, looks))| Wear {
+                name,
+                species,
+                groom,
+                looks,
+            })
+            .collect();
+        let parts = |i: usize, coats| Parts {
+            groom: wears[i].groom,
+            skin: &skin,
+            species: wears[i].species,
+            levels: &levels,
+            looks: wears[i].looks,
+            coats,
+            seed: 5,
+        };
+        let write = |name: &str, parts: &Parts<'_>| {
+            for suffix in ["usda", "usdc"] {
+                let path = folder.join(format!("{name}.{suffix}"));
+                write(&path, parts, &AssetSettings::default(), progress, cancel).unwrap();
+            }
+        };
+        write(file, &parts(0, &wears));
+        for (i, name) in names.iter().enumerate() {
+            write(&format!("{file}-{name}"), &parts(i, &[]));
+        }
     }
 }
 

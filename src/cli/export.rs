@@ -1,5 +1,6 @@
 //! `vair export`: the fur of a species for other programs.
 
+mod coats;
 mod lines;
 mod usdz;
 mod volume;
@@ -10,14 +11,15 @@ use crate::assembly;
 use crate::bake::{Cache, Settings};
 use crate::blame::Blame;
 use crate::export::asset::{
-    self, AssetSettings, ClassLook, Curves, Frame, Layout, Parts, Profile, READERS, Units, Up,
+    self, AssetSettings, ClassLook, Curves, Frame, Layout, Parts, Profile, READERS, Units, Up, Wear,
 };
 use crate::export::usd::Form;
 use crate::export::{ExportError, Format};
 use crate::groom::{self, Forecast, GroomSettings};
 use crate::io::check_writable;
 use crate::skin::Skin;
-use crate::species::{self, Species};
+use crate::species::Species;
+use coats::Dressed;
 use std::path::PathBuf;
 
 /// Text of more bytes than this is refused, and of more than the other remarked upon.
@@ -34,6 +36,7 @@ const MOST_LEVELS: usize = 4;
   vair export mink --skin sofa.obj --skin-units cm --strands 1e6 -o sofa.usdc
   vair export red-fox --profile unreal --units cm --up z -o fox.usd
   vair export cat --coat tabby -o tabby.usdc
+  vair export cat --coats tabby,siamese,none -o cats.usdc
   vair export red-fox --layout payload -o fox.usda
   vair export lynx --profile blender --levels 1 -o lynx.usdc
   vair export cat --strands 500 --curves phantom -o cat.usda
@@ -42,7 +45,8 @@ const MOST_LEVELS: usize = 4;
 The file is a component asset: under its default prim stand the skin as a mesh (geo/skin), the strands
 as curves, one prim a hair class (geo/render), few wide strands for viewports (geo/proxy) and guides
 (geo/guide). Levels of detail are the variants of `lod`; a coarser one has a quarter of the strands of
-the one before, the same strands, wider so that the coat stays opaque.
+the one before, the same strands, wider so that the coat stays opaque. Coats to choose from are variants
+of `coat`.
 
 Materials are Chiang's hair model (MaterialX's ND_chiang_hair_bsdf) fitted to the baked scattering table
 of each class and zone of pigment, with the error of the fit; hair that changes color along its length
@@ -57,6 +61,15 @@ pub(super) struct Args {
     /// tortoiseshell, the path of a recipe, or none; if not given, that of the species.
     #[arg(long, value_name = "NAME")]
     coat: Option<String>,
+    /// Coats to choose from in a USD asset, as variants of `coat`: the first is shown, and is that of other
+    /// formats.
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "NAMES",
+        conflicts_with = "coat"
+    )]
+    coats: Vec<String>,
     #[command(flatten)]
     on: SkinArgs,
     /// Strands in all; if not given, as many as the animal has, at most 250000.
@@ -173,10 +186,7 @@ impl From<ExportError> for Failure {
 
 fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     // All that can be refused is refused before any work.
-    let mut species = species::load(&args.name, &args.set)?;
-    if let Some(coat) = &args.coat {
-        species.wear(coat)?;
-    }
+    let dressed = coats::dressed(args)?;
     let settings = settings(args)?;
     let grids = volume::settings(&args.volume, &args.output, settings.frame)?;
     for output in &args.output {
@@ -190,7 +200,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         console.say(format!("warning: {warning}"));
     }
     let strands = args.strands.map(|n| n as usize);
-    let forecast = groom::forecast(&skin, &species, strands)?;
+    let forecast = groom::forecast(&skin, &dressed[0].species, strands)?;
     announce(args, &settings, &skin, &forecast, console)?;
 
     let cancel = console.cancel();
@@ -198,22 +208,42 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         strands,
         seed: args.seed,
     };
-    // Only assets have materials.
-    let looks = match writes_usd(args)? {
-        true => looks(args, &species, console)?,
-        false => Vec::new(),
-    };
-    let groom = groom::grow(&skin, &species, &grown, console, cancel)?;
-    for warning in &groom.warnings {
-        console.say(format!("warning: {warning}"));
+    // Only assets have materials, and a choice of coats.
+    let is_asset = writes_usd(args)?;
+    let mut grooms = Vec::new();
+    for Dressed { name, species } in dressed.iter().take(if is_asset { usize::MAX } else { 1 }) {
+        if args.coats.len() > 1 {
+            console.say(format!("coat {name}"));
+        }
+        let looks = match is_asset {
+            true => looks(args, species, console)?,
+            false => Vec::new(),
+        };
+        let groom = groom::grow(&skin, species, &grown, console, cancel)?;
+        for warning in &groom.warnings {
+            console.say(format!("warning: {warning}"));
+        }
+        grooms.push((groom, looks));
     }
-    let levels = asset::levels(&groom, &skin, &species, args.levels)?;
+    let species = &dressed[0].species;
+    let (groom, looks) = &grooms[0];
+    let levels = asset::levels(groom, &skin, species, args.levels)?;
+    let wears = dressed.iter().zip(&grooms);
+    let wears: Vec<Wear<'_>> = wears
+        .map(|(Dressed { name, species }, (groom, looks))| Wear {
+            name,
+            species,
+            groom,
+            looks,
+        })
+        .collect();
     let parts = Parts {
-        groom: &groom,
+        groom,
         skin: &skin,
-        species: &species,
+        species,
         levels: &levels,
-        looks: &looks,
+        looks,
+        coats: if args.coats.is_empty() { &[] } else { &wears },
         seed: args.seed,
     };
     let frame = settings.frame;
@@ -324,7 +354,13 @@ fn announce(
     const OF_POINT: usize = 16;
     const OF_STRAND: usize = 64;
     let (strands, points) = (forecast.strands, forecast.points);
-    let binary = asset::estimate(skin, [strands, points], args.levels, settings);
+    let binary = asset::estimate(
+        skin,
+        [strands, points],
+        args.levels,
+        args.coats.len(),
+        settings,
+    );
     let memory = 2 * (points * OF_POINT + strands * OF_STRAND);
     if !writes_usd(args)? {
         return Ok(());

@@ -404,6 +404,7 @@ fn exports_have_no_errors() {
             species: &species,
             levels: &levels(&groom, &skin, &species, 1 + i % 3).unwrap(),
             looks: &[],
+            coats: &[],
             seed: 1,
         };
         let settings = AssetSettings {

@@ -136,6 +136,46 @@ def check_levels(stage, name):
         finer = ids
 
 
+def content(stage):
+    """All that prims below the root are given: type and value of attributes, targets of relationships."""
+    found = {}
+    for prim in stage.Traverse():
+        if prim == stage.GetDefaultPrim():
+            continue
+        found[str(prim.GetPath())] = (prim.GetTypeName(), prim.GetAppliedSchemas(), prim.GetCustomData())
+        for attribute in prim.GetAuthoredAttributes():
+            value = attribute.Get()
+            value = np.array(value).tobytes() if hasattr(value, "__len__") and not isinstance(value, str) else value
+            found[str(attribute.GetPath())] = (attribute.GetTypeName(), value, attribute.GetMetadata("interpolation"), attribute.GetConnections())
+        for relationship in prim.GetAuthoredRelationships():
+            found[str(relationship.GetPath())] = relationship.GetTargets()
+    return found
+
+
+def check_coats(stage, path):
+    """Every choice of coat is what that coat is by itself, in NAME-COAT, at every level of detail."""
+    root = stage.GetDefaultPrim()
+    coats, levels = (root.GetVariantSet(name) for name in ("coat", "lod"))
+    seen = []
+    for coat in coats.GetVariantNames():
+        alone = Usd.Stage.Open(f"{path.with_suffix('')}-{coat}{path.suffix}")
+        alone.SetEditTarget(alone.GetSessionLayer())
+        coats.SetVariantSelection(coat)
+        for level in levels.GetVariantNames():
+            levels.SetVariantSelection(level)
+            alone.GetDefaultPrim().GetVariantSet("lod").SetVariantSelection(level)
+            ours, theirs = content(stage), content(alone)
+            other = [key for key in ours.keys() | theirs.keys() if ours.get(key) != theirs.get(key)]
+            if other:
+                fail(f"{path}: {coat} {level} differs from the coat by itself: {sorted(other)[:3]}")
+            check_stage(stage, f"{path} {coat} {level}")
+        skin = root.GetChild("geo").GetChild("skin").GetAttribute("primvars:displayColor")
+        seen.append(np.array(skin.Get()).tobytes())
+    if len(set(seen)) < len(seen):
+        fail(f"{path}: two coats have skin of the same color")
+    return len(seen)
+
+
 for name in sys.argv[1:]:
     paths = [Path(f"{name}.{suffix}") for suffix in ("usda", "usdc")]
     if text_of(paths[0]) != text_of(paths[1]):
@@ -148,4 +188,5 @@ for name in sys.argv[1:]:
         raw = path.with_suffix(".raw")
         count = check_numbers(stage, raw, path) if raw.exists() else 0
         check_levels(stage, path)
-    print(f"OK {name}: {validators} validators, {count} arrays bit for bit, purposes {', '.join(sorted(purposes))}")
+        coats = check_coats(stage, path)
+    print(f"OK {name}: {validators} validators, {count} arrays bit for bit, {coats} coats, purposes {', '.join(sorted(purposes))}")

@@ -1,7 +1,7 @@
 //! A groom as a component asset: skin, curves of every hair class, materials, levels of detail.
 //!
 //! ```text
-//! /red_fox            Xform, kind component; for Unreal also GroomAPI; variant set `lod`
+//! /red_fox            Xform, kind component; for Unreal also GroomAPI; variant sets `lod`, `coat`
 //!   /geo/skin         Mesh
 //!   /geo/render/...   BasisCurves a hair class
 //!   /geo/proxy/...    the same, few and wide, for viewports
@@ -22,6 +22,7 @@ mod provenance;
 mod skin;
 mod strands;
 mod tree;
+mod wardrobe;
 mod write;
 
 pub use colors::colors;
@@ -32,6 +33,7 @@ pub use look::{ClassLook, HairLook, LobeError};
 pub use profile::{Column, Profile, READERS, Reader};
 pub use provenance::identifier;
 pub use tree::{interface, layer};
+pub use wardrobe::Wear;
 pub use write::{TEXT_FACTOR, estimate, write};
 
 use super::ExportError;
@@ -52,6 +54,8 @@ pub struct Parts<'a> {
     pub levels: &'a [Level],
     /// Materials of the hair classes, in their order; empty for none.
     pub looks: &'a [ClassLook],
+    /// Coats to choose from as variants, first the one of all the above; empty if there is no choice.
+    pub coats: &'a [Wear<'a>],
     /// Seed of the groom.
     pub seed: u64,
 }

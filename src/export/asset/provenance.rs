@@ -39,7 +39,7 @@ pub(super) fn asset_info<'a>(parts: &Parts<'_>, file: &str) -> Dictionary<'a> {
 /// Everything that makes the same groom again.
 pub(super) fn recipe<'a>(parts: &Parts<'_>) -> Dictionary<'a> {
     let species = parts.species;
-    let entries = vec![
+    let mut entries = vec![
         ("program", Value::string(PROGRAM)),
         ("seed", Value::string(parts.seed.to_string())),
         ("skin", Value::string(&parts.skin.name)),
@@ -48,6 +48,10 @@ pub(super) fn recipe<'a>(parts: &Parts<'_>) -> Dictionary<'a> {
         ("species_text", Value::string(&species.text)),
         ("strands", Value::Int(parts.groom.strands() as i32)),
     ];
+    if !parts.coats.is_empty() {
+        let names: Vec<&str> = parts.coats.iter().map(|coat| coat.name).collect();
+        entries.insert(0, ("coats", Value::string(names.join(" "))));
+    }
     let entries = entries.into_iter().map(|(k, v)| (k.to_owned(), v));
     vec![("vair".to_owned(), Value::Dictionary(entries.collect()))]
 }

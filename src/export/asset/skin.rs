@@ -9,8 +9,14 @@ use std::sync::Arc;
 
 /// The skin's triangles; face `i` is the triangle that `skinprim` means.
 ///
-/// * `groom`: the fur on it; `color`: the species' skin, linear reflectance.
-pub(super) fn mesh<'a>(skin: &'a Skin, groom: &'a Groom, frame: Frame, color: Vec3) -> Prim<'a> {
+/// * `groom`: the fur on it, `None` for a mesh whose colors are said elsewhere; `color`: the species'
+///   skin, linear reflectance.
+pub(super) fn mesh<'a>(
+    skin: &'a Skin,
+    groom: Option<&'a Groom>,
+    frame: Frame,
+    color: Vec3,
+) -> Prim<'a> {
     let Vertices { source, corners } = vertices(skin);
     let source: Arc<[u32]> = source.into();
     let each = |of: fn(&Skin, usize) -> Vec3, turn: fn(Frame, Vec3) -> Vec3| {
@@ -38,16 +44,9 @@ pub(super) fn mesh<'a>(skin: &'a Skin, groom: &'a Groom, frame: Frame, color: Ve
         value: Some(each(|skin, v| skin.normals[v], Frame::direction).into()),
         ..Attribute::default()
     });
-    let shades = Arc::clone(&source);
-    let colors = Rows::each(source.len(), move |i| {
-        (groom.skin_color(skin, shades[i] as usize) * color).to_array()
-    });
-    mesh.primvar(
-        "color3f[]",
-        "displayColor",
-        "vertex",
-        Array::Vec3(colors).into(),
-    );
+    if let Some(groom) = groom {
+        put_colors(&mut mesh, skin, groom, color, Arc::clone(&source));
+    }
     let places = Arc::clone(&source);
     let uvs = Rows::each(source.len(), move |i| {
         skin.uvs[places[i] as usize].to_array()
@@ -55,6 +54,25 @@ pub(super) fn mesh<'a>(skin: &'a Skin, groom: &'a Groom, frame: Frame, color: Ve
     mesh.primvar("texCoord2f[]", "st", "vertex", Array::Vec2(uvs).into());
     mesh.set_uniform("token", "subdivisionScheme", Value::token("none"));
     mesh
+}
+
+/// Gives a mesh that is there the colors of a groom's skin.
+pub(super) fn paint<'a>(mesh: &mut Prim<'a>, skin: &'a Skin, groom: &'a Groom, color: Vec3) {
+    put_colors(mesh, skin, groom, color, vertices(skin).source.into());
+}
+
+fn put_colors<'a>(
+    mesh: &mut Prim<'a>,
+    skin: &'a Skin,
+    groom: &'a Groom,
+    color: Vec3,
+    source: Arc<[u32]>,
+) {
+    let colors = Rows::each(source.len(), move |i| {
+        (groom.skin_color(skin, source[i] as usize) * color).to_array()
+    });
+    let colors = Array::Vec3(colors);
+    mesh.primvar("color3f[]", "displayColor", "vertex", colors.into());
 }
 
 /// Corners of the box around all triangles.

@@ -36,7 +36,7 @@ pub fn interface<'a>(
     let mut root = builder.bare_root(file);
     root.payload = Some(format!("./{payload}"));
     root.api_schemas.push("GeomModelAPI".to_owned());
-    let hints = Array::Vec3(Rows::of(builder.extents()));
+    let hints = Array::Vec3(Rows::of(builder.extents_of_all_coats()));
     root.set("float3[]", "extentsHint", hints.into());
     Layer {
         prims: vec![root],
@@ -65,6 +65,19 @@ pub(super) struct Builder<'p, 'a> {
     pub(super) settings: &'a AssetSettings,
     /// Pigment of each class.
     pub(super) coats: Vec<Arc<Coats>>,
+    /// What curves are given here.
+    pub(super) content: Content,
+}
+
+/// What of their strands curves are given in one place; the rest is said in another.
+#[derive(Clone, Copy)]
+pub(super) struct Content {
+    /// Number of points, and what a strand has once.
+    pub(super) strands: bool,
+    /// Points and widths.
+    pub(super) shape: bool,
+    /// Color along strands, and materials.
+    pub(super) color: bool,
 }
 
 /// What a prim of curves is for.
@@ -75,13 +88,38 @@ pub(super) enum Purpose {
     Guide,
 }
 
+impl Purpose {
+    /// As USD names it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Render => "render",
+            Self::Proxy => "proxy",
+            Self::Guide => "guide",
+        }
+    }
+}
+
 impl<'p, 'a> Builder<'p, 'a> {
     fn new(parts: &'p Parts<'a>, settings: &'a AssetSettings) -> Self {
+        let content = Content {
+            strands: true,
+            shape: parts.coats_have_one_shape(),
+            color: parts.coats.is_empty(),
+        };
+        Self::with(parts, settings, content)
+    }
+
+    pub(super) fn with(
+        parts: &'p Parts<'a>,
+        settings: &'a AssetSettings,
+        content: Content,
+    ) -> Self {
         let coats = |class| Arc::new(Coats::new(parts.species, class, parts.looks.get(class)));
         Self {
             parts,
             settings,
             coats: (0..parts.species.classes.len()).map(coats).collect(),
+            content,
         }
     }
 
@@ -117,6 +155,11 @@ impl<'p, 'a> Builder<'p, 'a> {
         let mut root = self.bare_root(file);
         let mut scope = Prim::new("Scope", "mtl");
         scope.children = self.materials();
+        if !self.parts.looks.is_empty() {
+            scope
+                .children
+                .push(material::skin(&self.material_scope(), self.skin_color()));
+        }
         root.children.push(self.geometry());
         if !scope.children.is_empty() {
             root.children.push(scope);
@@ -129,11 +172,16 @@ impl<'p, 'a> Builder<'p, 'a> {
                 variants: self.parts.levels.iter().map(|l| self.variant(l)).collect(),
             });
         }
+        if let Some(worn) = self.parts.coats.first() {
+            root.selections
+                .push(("coat".to_owned(), worn.name.to_owned()));
+            root.variant_sets.push(self.wardrobe(|coat| coat.always()));
+        }
         root
     }
 
     /// Boxes around all that is shown always, in pictures, in viewports and as guides.
-    fn extents(&self) -> Vec<[f32; 3]> {
+    pub(super) fn extents(&self) -> Vec<[f32; 3]> {
         let full = &self.parts.levels[0];
         let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let around = |level: &Level| {
@@ -168,7 +216,7 @@ impl<'p, 'a> Builder<'p, 'a> {
     }
 
     /// The color of the skin.
-    fn skin_color(&self) -> Vec3 {
+    pub(super) fn skin_color(&self) -> Vec3 {
         Vec3::from_array(self.parts.species.skin_color.map(|c| c as f32))
     }
 
@@ -177,16 +225,17 @@ impl<'p, 'a> Builder<'p, 'a> {
         format!("/{}/mtl", identifier(&self.parts.species.id))
     }
 
-    fn materials(&self) -> Vec<Prim<'a>> {
+    /// Materials of the hair.
+    pub(super) fn materials(&self) -> Vec<Prim<'a>> {
         let scope = self.material_scope();
         let mut materials = Vec::new();
+        if !self.content.color {
+            return materials;
+        }
         for (class, look) in self.parts.looks.iter().enumerate() {
             let hair = self.class(class);
             let (names, coats) = (&self.parts.groom.coats, &self.coats[class]);
             materials.extend(material::materials(&scope, hair, names, look, coats));
-        }
-        if !materials.is_empty() {
-            materials.push(material::skin(&scope, self.skin_color()));
         }
         materials
     }
@@ -210,41 +259,44 @@ impl<'p, 'a> Builder<'p, 'a> {
         let mut geometry = Prim::new("Scope", "geo");
         let mut mesh = skin::mesh(
             self.parts.skin,
-            self.parts.groom,
+            self.content.color.then_some(self.parts.groom),
             self.settings.frame,
             self.skin_color(),
         );
         self.bind(&mut mesh, "skin");
         geometry.children.push(mesh);
-        let full = &self.parts.levels[0];
-        let mut render = purpose("render");
-        for (class, level) in self.classes(full) {
-            let mut curves = self.curves(class);
-            if self.parts.levels.len() == 1 {
-                self.fill(&mut curves, class, level, Purpose::Render);
-            }
-            render.children.push(curves);
-        }
-        geometry.children.push(render);
-        if !self.settings.no_proxy {
-            let few = proxy(full);
-            let mut scope = purpose("proxy");
-            for (class, level) in self.classes(&few) {
+        for (purpose, classes) in self.shown() {
+            let mut scope = Prim::new("Scope", purpose.name());
+            scope.set_uniform("token", "purpose", Value::token(purpose.name()));
+            for (class, level) in classes {
                 let mut curves = self.curves(class);
-                self.fill(&mut curves, class, level, Purpose::Proxy);
+                if !self.is_of_levels(purpose) {
+                    self.fill(&mut curves, class, level, purpose);
+                }
                 scope.children.push(curves);
             }
             geometry.children.push(scope);
         }
+        geometry
+    }
+
+    /// What there is for pictures, for viewports and as guides: hair classes and their strands.
+    pub(super) fn shown(&self) -> Vec<(Purpose, Vec<(usize, LevelClass)>)> {
+        let full = &self.parts.levels[0];
+        let mut shown = vec![(Purpose::Render, self.classes(full))];
+        if !self.settings.no_proxy {
+            shown.push((Purpose::Proxy, self.classes(&proxy(full))));
+        }
         let leading = guides(full);
         if !self.settings.no_guides && !leading.strands.is_empty() {
-            let mut scope = purpose("guide");
-            let mut curves = self.curves(0);
-            self.fill(&mut curves, 0, leading, Purpose::Guide);
-            scope.children.push(curves);
-            geometry.children.push(scope);
+            shown.push((Purpose::Guide, vec![(0, leading)]));
         }
-        geometry
+        shown
+    }
+
+    /// Whether the levels of detail give curves their strands.
+    pub(super) fn is_of_levels(&self, purpose: Purpose) -> bool {
+        purpose == Purpose::Render && self.parts.levels.len() > 1
     }
 
     /// Classes with strands, and those strands.
@@ -255,6 +307,16 @@ impl<'p, 'a> Builder<'p, 'a> {
 
     /// What a level of detail adds to the curves that are there.
     fn variant(&self, level: &Level) -> Prim<'a> {
+        let mut variant = self.strands_of(level, level.name);
+        if !self.parts.coats.is_empty() {
+            let set = self.wardrobe(|coat| coat.strands_of(level, ""));
+            variant.variant_sets.push(set);
+        }
+        variant
+    }
+
+    /// The strands of a level as a variant of some name.
+    fn strands_of(&self, level: &Level, name: &str) -> Prim<'a> {
         let mut render = Prim::over("render");
         for (class, strands) in self.classes(level) {
             let mut curves = Prim::over(identifier(&self.class(class).name));
@@ -263,7 +325,7 @@ impl<'p, 'a> Builder<'p, 'a> {
         }
         let mut geometry = Prim::over("geo");
         geometry.children.push(render);
-        let mut variant = Prim::over(level.name);
+        let mut variant = Prim::over(name);
         variant.children.push(geometry);
         variant
     }
@@ -301,33 +363,42 @@ impl<'p, 'a> Builder<'p, 'a> {
     }
 
     /// Gives curves their strands.
-    fn fill(&self, prim: &mut Prim<'a>, class: usize, of_class: LevelClass, purpose: Purpose) {
+    pub(super) fn fill(
+        &self,
+        prim: &mut Prim<'a>,
+        class: usize,
+        of_class: LevelClass,
+        purpose: Purpose,
+    ) {
         let strands = self.strands(of_class);
-        let extent = Array::Vec3(Rows::of(strands.extent().to_vec()));
-        prim.set("float3[]", "extent", extent.into());
-        prim.set("int[]", "curveVertexCounts", strands.counts().into());
-        let points: Value<'a> = strands.points().into();
-        prim.set("point3f[]", "points", points.clone());
-        prim.add(Attribute {
-            name: "widths".to_owned(),
-            type_name: "float[]",
-            interpolation: "vertex",
-            value: Some(strands.widths().into()),
-            ..Attribute::default()
-        });
-        if purpose == Purpose::Guide {
-            prim.primvar("point3f[]", "rest", "vertex", points);
+        if self.content.shape {
+            let extent = Array::Vec3(Rows::of(strands.extent().to_vec()));
+            prim.set("float3[]", "extent", extent.into());
         }
-        self.strand_columns(prim, &strands, class, purpose);
-        self.point_columns(prim, &strands, class);
+        if self.content.strands {
+            prim.set("int[]", "curveVertexCounts", strands.counts().into());
+        }
+        if self.content.shape {
+            let points: Value<'a> = strands.points().into();
+            prim.set("point3f[]", "points", points.clone());
+            prim.add(Attribute {
+                name: "widths".to_owned(),
+                type_name: "float[]",
+                interpolation: "vertex",
+                value: Some(strands.widths().into()),
+                ..Attribute::default()
+            });
+            if purpose == Purpose::Guide {
+                prim.primvar("point3f[]", "rest", "vertex", points);
+            }
+        }
+        if self.content.strands {
+            self.strand_columns(prim, &strands, class, purpose);
+        }
+        if self.content.color {
+            self.point_columns(prim, &strands, class);
+        }
     }
-}
-
-/// A scope whose purpose holds for all below it.
-fn purpose(name: &'static str) -> Prim<'static> {
-    let mut scope = Prim::new("Scope", name);
-    scope.set_uniform("token", "purpose", Value::token(name));
-    scope
 }
 
 /// An attribute that no schema knows.

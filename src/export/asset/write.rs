@@ -15,11 +15,12 @@ pub const TEXT_FACTOR: u64 = 4;
 /// Bytes of an asset in binary form, to some ten percent; text takes [`TEXT_FACTOR`] times as many.
 ///
 /// * `size`: strands and control points of the finest level. * `levels`: of detail, each with a quarter
-///   of the strands of the one before.
+///   of the strands of the one before. * `coats`: to choose from, taken to be of one shape.
 pub fn estimate(
     skin: &Skin,
     [strands, points]: [usize; 2],
     levels: usize,
+    coats: usize,
     settings: &AssetSettings,
 ) -> u64 {
     let wanted =
@@ -28,14 +29,15 @@ pub fn estimate(
     for column in Column::ALL.iter().filter(|c| wanted.contains(&Some(**c))) {
         let (strand, point) = column.bytes();
         of_strand += strand;
-        of_point += point;
+        // All that points have is color.
+        of_point += point * coats.max(1);
     }
     let full = strands * of_strand + settings.curves.total(strands, points) * of_point;
     let share: f64 = (0..levels.max(1))
         .map(|level| 0.25f64.powi(level as i32))
         .sum();
     // A vertex of the skin has place, normal, color and texture coordinates.
-    let skin = 44 * skin.positions.len() + 6 * skin.triangles.len();
+    let skin = (32 + 12 * coats.max(1)) * skin.positions.len() + 6 * skin.triangles.len();
     (full as f64 * share) as u64 + skin as u64
 }
 
@@ -61,7 +63,13 @@ pub fn write(
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let job = Job { progress, cancel };
     let size = [parts.groom.strands(), parts.groom.points.len()];
-    let size = estimate(parts.skin, size, parts.levels.len(), settings);
+    let size = estimate(
+        parts.skin,
+        size,
+        parts.levels.len(),
+        parts.coats.len(),
+        settings,
+    );
     if settings.layout == Layout::Single {
         let size = size * if form == Form::Text { TEXT_FACTOR } else { 1 };
         return job.write(path, &tree::layer(parts, settings, &name), form, size);
@@ -131,6 +139,7 @@ mod tests {
             species: &fox,
             levels: &levels(&groom, &skin, &fox, 1).unwrap(),
             looks: &[],
+            coats: &[],
             seed: 0,
         };
         let folder = tempfile::tempdir().unwrap();
@@ -151,7 +160,7 @@ mod tests {
                 };
                 write(&path, &parts, &settings, &Silent, &cancel).unwrap();
                 let size = std::fs::metadata(&path).unwrap().len() as f64;
-                let foretold = estimate(&skin, [6000, groom.points.len()], 1, &settings) as f64;
+                let foretold = estimate(&skin, [6000, groom.points.len()], 1, 0, &settings) as f64;
                 let off = foretold / size - 1.0;
                 println!("{curves:?} {readers:?}: {:.1} %", 100.0 * off);
                 assert!(

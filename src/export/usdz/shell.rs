@@ -7,10 +7,10 @@ use crate::species::Species;
 use glam::Vec3;
 use std::collections::HashMap;
 
-/// Rounds in which places without hair take the height of their neighbors.
-const ROUNDS: usize = 24;
-/// Rounds in which neighbors are averaged, so that single hairs make no spikes.
-const SMOOTHING: usize = 3;
+/// Hairs that a mean should be of, so that single ones make neither spikes nor specks.
+const HAIRS: f32 = 12.0;
+/// Most rounds in which neighbors share what they know.
+const MOST_ROUNDS: usize = 24;
 /// Share of a hair from its tip whose color is seen.
 const SEEN: f32 = 0.5;
 
@@ -34,6 +34,14 @@ struct Sums {
     color: Vec3,
 }
 
+impl Sums {
+    fn add(&mut self, other: Self) {
+        self.weight += other.weight;
+        self.height += other.height;
+        self.color += other.color;
+    }
+}
+
 impl Shell {
     /// * `skin_color`: of the skin where no hair grows, linear.
     pub(super) fn new(groom: &Groom, skin: &Skin, species: &Species, skin_color: Vec3) -> Self {
@@ -52,7 +60,7 @@ impl Shell {
             .iter()
             .map(|&v| skin.density[v as usize] == 0.0)
             .collect();
-        spread(&mut sums, &triangles, &bare);
+        share(&mut sums, &triangles, &bare, groom.strands());
         let skin_colors = of_place(&|v| groom.skin_color(skin, v) * skin_color);
         let colors = (sums.iter().zip(skin_colors))
             .map(|(s, own)| {
@@ -63,18 +71,10 @@ impl Shell {
                 }
             })
             .collect();
-        let mut heights: Vec<f32> = (sums.iter())
-            .map(|s| {
-                if s.weight > 0.0 {
-                    s.height / s.weight
-                } else {
-                    0.0
-                }
-            })
-            .collect();
-        smooth(&mut heights, &triangles);
-        for ((point, normal), height) in points.iter_mut().zip(&outward).zip(&heights) {
-            *point += *normal * *height;
+        for ((point, normal), sums) in points.iter_mut().zip(&outward).zip(&sums) {
+            if sums.weight > 0.0 {
+                *point += *normal * (sums.height / sums.weight);
+            }
         }
         Self {
             normals: normals(&points, &triangles),
@@ -125,57 +125,33 @@ fn sums(groom: &Groom, skin: &Skin, species: &Species, place: &[u32], count: usi
         let seen = &colors[first.min(range.end - 1)..range.end];
         let color = seen.iter().sum::<Vec3>() / seen.len() as f32;
         for (corner, share) in corners.into_iter().zip(shares) {
-            let sums = &mut sums[place[corner as usize] as usize];
             let weight = area * share.max(0.0);
-            sums.weight += weight;
-            sums.height += weight * height;
-            sums.color += weight * color;
+            sums[place[corner as usize] as usize].add(Sums {
+                weight,
+                height: weight * height,
+                color: weight * color,
+            });
         }
     }
     sums
 }
 
-/// Gives places between hairs what their neighbors have; bare skin stays as it is.
-fn spread(sums: &mut [Sums], triangles: &[[u32; 3]], bare: &[bool]) {
-    for _ in 0..ROUNDS {
-        let mut found: Vec<(u32, Sums)> = Vec::new();
+/// Lets every place hear of the hairs around it, until there are enough for a mean; bare skin hears of none.
+fn share(sums: &mut Vec<Sums>, triangles: &[[u32; 3]], bare: &[bool], strands: usize) {
+    // A round doubles the places that a hair counts in, and then adds about three.
+    let of_place = strands as f32 / sums.len().max(1) as f32;
+    let rounds = ((HAIRS / (3.0 * of_place)).ceil() as usize).clamp(1, MOST_ROUNDS);
+    for _ in 0..rounds {
+        let mut next = sums.clone();
         for triangle in triangles {
             for k in 0..3 {
-                let (empty, other) = (triangle[k], triangle[(k + 1) % 3]);
-                for (to, from) in [(empty, other), (other, empty)] {
-                    let source = sums[from as usize];
-                    if sums[to as usize].weight == 0.0 && source.weight > 0.0 && !bare[to as usize]
-                    {
-                        found.push((to, source));
-                    }
+                let (to, from) = (triangle[k] as usize, triangle[(k + 1) % 3] as usize);
+                if !bare[to] {
+                    next[to].add(sums[from]);
                 }
             }
         }
-        if found.is_empty() {
-            return;
-        }
-        for (to, source) in found {
-            let sums = &mut sums[to as usize];
-            sums.weight += 1.0;
-            sums.height += source.height / source.weight;
-            sums.color += source.color / source.weight;
-        }
-    }
-}
-
-fn smooth(heights: &mut [f32], triangles: &[[u32; 3]]) {
-    for _ in 0..SMOOTHING {
-        let mut sums: Vec<(f32, f32)> = heights.iter().map(|&h| (2.0 * h, 2.0)).collect();
-        for triangle in triangles {
-            for k in 0..3 {
-                let (a, b) = (triangle[k] as usize, triangle[(k + 1) % 3] as usize);
-                sums[a].0 += heights[b];
-                sums[a].1 += 1.0;
-            }
-        }
-        for (height, (sum, count)) in heights.iter_mut().zip(sums) {
-            *height = sum / count;
-        }
+        *sums = next;
     }
 }
 
