@@ -73,7 +73,10 @@ impl Shell {
             .collect();
         for ((point, normal), sums) in points.iter_mut().zip(&outward).zip(&sums) {
             if sums.weight > 0.0 {
+                let lowest = skin.floor.map(|floor| floor.min(point.y));
                 *point += *normal * (sums.height / sums.weight);
+                // Hair lies on the ground and does not go through it.
+                point.y = lowest.map_or(point.y, |lowest| point.y.max(lowest));
             }
         }
         Self {
