@@ -228,12 +228,16 @@ fn cross_check(
         let ours = strands.closest(ray, f32::INFINITY, None);
         let close = |a: f32| (a - t).abs() <= 1e-3 + 1e-5 * t;
         match (&ours, theirs) {
-            (Some(hit), Some(&joint)) if hit.segment == joint && close(hit.t) => same += 1,
+            (Some(hit), Some(&joint))
+                if strands.joint_of(hit) == joint as usize && close(hit.t) =>
+            {
+                same += 1
+            }
             (None, None) => same += 1,
             (Some(hit), Some(_)) if close(hit.t) => near += 1,
             (Some(hit), _) => {
                 // Embree takes no hit nearer than a width.
-                let [a, b] = [0, 1].map(|k| joints[hit.segment as usize + k].1.w);
+                let [a, b] = [0, 1].map(|k| joints[strands.joint_of(hit) + k].1.w);
                 let width = 2.0 * a.max(b) * (1.0 + 1e-5);
                 start += u32::from(hit.t <= width);
             }

@@ -1,9 +1,10 @@
-//! Frames, turns, exponentials, steps, the unicube map and Fresnel equations.
+//! Frames, turns, exponentials, steps, unit vectors in 32 bits, the unicube map and Fresnel equations.
 
 pub mod decay;
 pub mod ease;
 pub mod frame;
 pub mod fresnel;
+pub mod octahedral;
 pub mod symmetry;
 pub mod turn;
 pub mod unicube;

@@ -3,6 +3,7 @@
 mod camera;
 mod environment;
 mod flatten;
+mod joints;
 mod ribbon;
 mod strands;
 mod surface;

@@ -1,19 +1,17 @@
 //! All strands of a scene as segments behind a tree.
 
 use super::SceneError;
-use super::flatten::flatten;
+use super::joints::Joints;
 use super::ribbon::Segment;
 use super::tree::{Found, Ignored, Run, Tree};
-use crate::accel::{LIMIT, Ray, hash_bits};
+use crate::accel::{Ray, hash_bits};
 use crate::groom::Groom;
+use crate::math::octahedral;
 use glam::{Quat, Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
 /// Scene units (millimeters) in a meter.
 pub(super) const UNITS_PER_METER: f32 = 1000.0;
-
-/// Strands cut together; any number gives the same result.
-const BATCH: usize = 4096;
 
 /// A point of a strand met by a ray.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +19,7 @@ pub struct StrandHit {
     /// Distance along the ray, millimeters.
     pub t: f32,
     /// The segment, which scattered rays have to leave.
-    pub segment: u32,
+    found: Found,
     /// Index of the strand in the groom.
     pub strand: u32,
     /// Hair class of the strand.
@@ -49,18 +47,33 @@ impl Leaving {
     }
 }
 
-/// What is kept of each strand.
+/// What is kept of each strand for those that ask for it, which shading does not.
 #[derive(Clone, Copy, Debug)]
 struct Strand {
-    class: u8,
-    coat: u8,
-    length_mm: f32,
     id: u32,
     root_uv: Vec2,
 }
 
-/// Runs between two entries of [`Strands::strand_of`].
-const STRIDE: usize = 32;
+/// What a strand says of each of its runs.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    strand: u32,
+    class: u8,
+    coat: u8,
+}
+
+/// What shading has to know of a run, together: one line of a cache a hit, where arrays of each cost four and
+/// tangents from neighboring joints up to three leaves.
+#[derive(Clone, Copy, Debug)]
+struct Course {
+    place: Place,
+    /// Position along the strand of its joints, in 65535ths.
+    at: [u16; 3],
+    /// Unit tangents at its joints.
+    tangents: [[i16; 2]; 3],
+}
+
+const AT_STEPS: f32 = 65_535.0;
 
 /// Strands ready for tracing. Joints are numbered in the order of strands, root first, and segments by the
 /// joint they start at. Where joints are is known to the tree alone.
@@ -69,10 +82,10 @@ pub struct Strands {
     first_joint: Vec<u32>,
     /// First run of each strand, and their number.
     first_run: Vec<u32>,
-    /// The strand of every so many runs.
-    strand_of: Vec<u32>,
-    /// Position along the strand of each joint, 0..1.
-    at: Vec<f32>,
+    /// For each run.
+    courses: Vec<Course>,
+    /// For each strand.
+    length_mm: Vec<f32>,
     strands: Vec<Strand>,
     /// Major axis of the section at each joint; empty if nobody asks for it.
     sides: Vec<Vec3>,
@@ -86,31 +99,12 @@ impl Strands {
     /// * Strands without length are left out. Where strands coincide to the last bit the lowest is there, the only
     ///   one a ray could have met.
     pub fn build(groom: &Groom) -> Result<Self, SceneError> {
-        check(groom)?;
         let count = groom.strands();
-        let batches: Vec<Batch> = (0..count.div_ceil(BATCH))
-            .into_par_iter()
-            .map(|b| cut(groom, b * BATCH..((b + 1) * BATCH).min(count)))
-            .collect();
-        let mut all = Batch::default();
-        for batch in batches {
-            all.joints.extend(batch.joints);
-            all.at.extend(batch.at);
-            all.count.extend(batch.count);
-            all.length_mm.extend(batch.length_mm);
-        }
-        let is_far = |j: &Vec4| !j.is_finite() || j.abs().max_element() > LIMIT;
-        if let Some(far) = all.joints.iter().copied().find(is_far) {
-            return Err(SceneError::Coordinates { at: far.xyz() });
-        }
-        let (mut first_joint, mut first_run) = (vec![0], vec![0]);
-        let (mut runs, mut strand_of) = (Vec::new(), Vec::new());
+        let all = Joints::cut(groom)?;
+        let (mut first_joint, mut first_run, mut runs) = (vec![0], vec![0], Vec::new());
         let mut joint = 0;
-        for (strand, &count) in all.count.iter().enumerate() {
+        for &count in &all.count {
             for first in (0..count.saturating_sub(1)).step_by(2) {
-                if runs.len().is_multiple_of(STRIDE) {
-                    strand_of.push(strand as u32);
-                }
                 runs.push(Run {
                     joint: joint + first,
                     segments: (count - 1 - first).min(2) as u8,
@@ -124,21 +118,26 @@ impl Strands {
         let tree = Tree::build(&all.joints, &runs, &copies);
         let copied: usize = copies.iter().map(|&(r, _)| segments_of(&runs, r)).sum();
         let segments = runs.iter().map(|r| usize::from(r.segments)).sum::<usize>() - copied;
-        let strands = (0..count)
-            .map(|i| Strand {
-                class: groom.class[i],
-                coat: groom.coat.get(i).copied().unwrap_or_default(),
-                length_mm: all.length_mm[i],
-                id: groom.id.get(i).copied().unwrap_or(i as u32),
-                root_uv: groom.root_uv.get(i).copied().unwrap_or_default(),
-            })
-            .collect();
+        let courses = (0..count).into_par_iter().flat_map_iter(|strand| {
+            let joints = first_joint[strand] as usize..first_joint[strand + 1] as usize;
+            let place = Place {
+                strand: strand as u32,
+                class: groom.class[strand],
+                coat: groom.coat.get(strand).copied().unwrap_or_default(),
+            };
+            courses(place, &all.joints[joints.clone()], &all.at[joints])
+        });
+        let courses = courses.collect();
+        let strand = |i: usize| Strand {
+            id: groom.id.get(i).copied().unwrap_or(i as u32),
+            root_uv: groom.root_uv.get(i).copied().unwrap_or_default(),
+        };
         Ok(Self {
             first_joint,
             first_run,
-            strand_of,
-            at: all.at,
-            strands,
+            courses,
+            length_mm: all.length_mm,
+            strands: (0..count).map(strand).collect(),
             sides: Vec::new(),
             tree,
             segments,
@@ -149,11 +148,12 @@ impl Strands {
     /// on they turn as the tangent does and no further (parallel transport). Strands of which the groom
     /// does not say how they lie get any side.
     pub fn carry_sides(&mut self, groom: &Groom) {
-        let mut sides = Vec::with_capacity(self.at.len());
+        let mut sides = Vec::new();
         for strand in 0..self.strands.len() as u32 {
             let mut last: Option<(Vec3, Vec3)> = None;
             for joint in 0..self.joints_of(strand) {
-                let tangent = self.tangent_at_joint(strand, joint);
+                let (run, k) = self.run_of(strand, joint);
+                let tangent = octahedral::decode(self.courses[run as usize].tangents[k]);
                 let carried = match last {
                     Some((before, side)) => Quat::from_rotation_arc(before, tangent) * side,
                     None => {
@@ -167,16 +167,6 @@ impl Strands {
             }
         }
         self.sides = sides;
-    }
-
-    /// Unit tangent at a joint of a strand.
-    fn tangent_at_joint(&self, strand: u32, joint: u32) -> Vec3 {
-        if joint + 1 < self.joints_of(strand) {
-            self.tangent(strand, joint, 0.0)
-        } else {
-            // The last of its strand, which has two at least.
-            self.tangent(strand, joint - 1, 1.0)
-        }
     }
 
     /// Number of segments that rays are tested against.
@@ -198,27 +188,40 @@ impl Strands {
 
     /// A joint of a strand, counted from the root.
     fn joint(&self, strand: u32, joint: u32) -> Vec4 {
+        let (run, k) = self.run_of(strand, joint);
+        self.tree.joint(run, k)
+    }
+
+    /// A run that a joint of a strand, counted from the root, belongs to, and the joint's number there.
+    fn run_of(&self, strand: u32, joint: u32) -> (u32, usize) {
         let first = self.first_run[strand as usize];
         let last = self.first_run[strand as usize + 1] - 1;
         let run = (first + joint / 2).min(last);
-        self.tree.joint(run, (joint - 2 * (run - first)) as usize)
+        (run, (joint - 2 * (run - first)) as usize)
     }
 
-    /// The segment of a strand that starts at a joint, to the bit as rays meet it: where two runs join, each has the
-    /// joint rounded in its own way.
+    /// The segment of a strand that starts at a joint, as rays meet it.
+    #[cfg(test)]
     pub(super) fn piece(&self, strand: u32, joint: u32) -> Segment {
         let run = self.first_run[strand as usize] + joint / 2;
-        let half = joint as usize % 2;
-        Segment {
-            root: self.tree.joint(run, half),
-            tip: self.tree.joint(run, half + 1),
-        }
+        let [root, tip] = [0, 1].map(|k| self.tree.joint(run, joint as usize % 2 + k));
+        Segment { root, tip }
     }
 
     /// The segment that was met.
     pub fn segment(&self, hit: &StrandHit) -> Segment {
-        let first = self.first_joint[hit.strand as usize];
-        self.piece(hit.strand, hit.segment - first)
+        self.tree.segment(&hit.found)
+    }
+
+    /// Where among [`Strands::joints`] the segment begins that was met.
+    pub fn joint_of(&self, hit: &StrandHit) -> usize {
+        self.joint_index(&hit.found, hit.strand)
+    }
+
+    fn joint_index(&self, found: &Found, strand: u32) -> usize {
+        let strand = strand as usize;
+        let local = 2 * (found.run - self.first_run[strand]) + found.half;
+        (self.first_joint[strand] + local) as usize
     }
 
     /// Stable id of a strand.
@@ -245,34 +248,35 @@ impl Strands {
     }
 
     fn describe(&self, found: &Found, ray: &Ray) -> Option<StrandHit> {
-        let mut strand = self.strand_of[found.run as usize / STRIDE];
-        while self.first_run[strand as usize + 1] <= found.run {
-            strand += 1;
-        }
-        let local = 2 * (found.run - self.first_run[strand as usize]) + found.half;
-        let piece = self.piece(strand, local);
-        let (_, along) = piece.intersect(ray.origin, ray.dir)?;
-        let joint = (self.first_joint[strand as usize] + local) as usize;
-        let Strand {
+        let course = &self.courses[found.run as usize];
+        let (_, along) = self.tree.segment(found).intersect(ray.origin, ray.dir)?;
+        let half = found.half as usize;
+        let [from, to] = [half, half + 1].map(|k| f32::from(course.at[k]) / AT_STEPS);
+        let at = from + along * (to - from);
+        let [before, after] = [half, half + 1].map(|k| octahedral::decode(course.tangents[k]));
+        let tangent = before.lerp(after, along).normalize_or(before);
+        let Place {
+            strand,
             class,
             coat,
-            length_mm,
-            ..
-        } = self.strands[strand as usize];
-        let at = self.at[joint] + along * (self.at[joint + 1] - self.at[joint]);
-        let tangent = self.tangent(strand, local, along);
-        let side = match self.sides.get(joint..joint + 2) {
-            Some(&[a, b]) => across(a.lerp(b, along), tangent),
-            _ => Vec3::ZERO,
+        } = course.place;
+        let side = if self.sides.is_empty() {
+            Vec3::ZERO
+        } else {
+            let joint = self.joint_index(found, strand);
+            across(
+                self.sides[joint].lerp(self.sides[joint + 1], along),
+                tangent,
+            )
         };
         Some(StrandHit {
             t: found.t,
-            segment: joint as u32,
+            found: *found,
             strand,
             class,
             coat,
             at,
-            tip_mm: (1.0 - at) * length_mm,
+            tip_mm: (1.0 - at) * self.length_mm[strand as usize],
             tangent,
             side,
         })
@@ -295,23 +299,35 @@ impl Strands {
             clear: width / sin,
         })
     }
+}
 
-    fn tangent(&self, strand: u32, joint: u32, along: f32) -> Vec3 {
-        let at = |j: u32| self.joint(strand, j).xyz();
-        let chord = |a: Vec3, b: Vec3| (b - a).normalize_or_zero();
-        let (root, tip) = (at(joint), at(joint + 1));
-        let own = chord(root, tip);
-        let before = match joint.checked_sub(1) {
-            Some(j) => (chord(at(j), root) + own).normalize_or(own),
-            None => own,
-        };
-        let after = if joint + 2 < self.joints_of(strand) {
-            (chord(tip, at(joint + 2)) + own).normalize_or(own)
-        } else {
-            own
-        };
-        before.lerp(after, along).normalize_or(own)
-    }
+/// The runs of a strand.
+///
+/// * `at`: position of each joint along it.
+fn courses(place: Place, joints: &[Vec4], at: &[f32]) -> impl Iterator<Item = Course> {
+    let last = joints.len().saturating_sub(1);
+    let run = move |first: usize| {
+        let joint = [0, 1, 2].map(|k| (first + k).min(last));
+        Course {
+            place,
+            at: joint.map(|j| (AT_STEPS * at[j]).round() as u16),
+            tangents: joint.map(|j| octahedral::encode(tangent(joints, j))),
+        }
+    };
+    (0..last).step_by(2).map(run)
+}
+
+/// Unit tangent at a joint: halfway between the segments that meet there.
+fn tangent(joints: &[Vec4], joint: usize) -> Vec3 {
+    let chord = |i: usize| match joints.get(i..i + 2) {
+        Some([a, b]) => (*b - *a).xyz().normalize_or_zero(),
+        _ => Vec3::ZERO,
+    };
+    let before = joint.checked_sub(1).map_or(Vec3::ZERO, chord);
+    let after = chord(joint);
+    let any = if after == Vec3::ZERO { before } else { after };
+    // Back on itself or without length: any direction will do.
+    (before + after).normalize_or(any.normalize_or(Vec3::Y))
 }
 
 /// The part of a vector across a unit tangent, as a unit vector; any such where there is none.
@@ -319,49 +335,6 @@ fn across(v: Vec3, tangent: Vec3) -> Vec3 {
     let part = v - tangent * v.dot(tangent);
     part.try_normalize()
         .unwrap_or_else(|| tangent.any_orthonormal_vector())
-}
-
-/// The joints of some strands.
-#[derive(Default)]
-struct Batch {
-    joints: Vec<Vec4>,
-    at: Vec<f32>,
-    /// For each strand.
-    count: Vec<u32>,
-    length_mm: Vec<f32>,
-}
-
-fn cut(groom: &Groom, strands: std::ops::Range<usize>) -> Batch {
-    let mut out = Batch::default();
-    let (mut control, mut joints) = (Vec::new(), Vec::new());
-    for strand in strands {
-        let range = groom.offsets[strand] as usize..groom.offsets[strand + 1] as usize;
-        control.clear();
-        control.extend(range.map(|p| {
-            (groom.points[p] * UNITS_PER_METER).extend(0.5 * groom.widths[p] * UNITS_PER_METER)
-        }));
-        joints.clear();
-        flatten(&control, &mut joints);
-        if joints.len() < 2 {
-            out.length_mm.push(0.0);
-            out.count.push(0);
-            continue;
-        }
-        let start = out.at.len();
-        let mut length = 0.0f64;
-        out.at.push(0.0);
-        for pair in joints.windows(2) {
-            length += f64::from(pair[0].xyz().distance(pair[1].xyz()));
-            out.at.push(length as f32);
-        }
-        for at in &mut out.at[start..] {
-            *at /= length as f32;
-        }
-        out.length_mm.push(length as f32);
-        out.count.push(joints.len() as u32);
-        out.joints.extend_from_slice(&joints);
-    }
-    out
 }
 
 fn segments_of(runs: &[Run], run: u32) -> usize {
@@ -393,26 +366,4 @@ fn copies(joints: &[Vec4], runs: &[Run]) -> Vec<(u32, u32)> {
     }
     copies.sort_unstable();
     copies
-}
-
-fn check(groom: &Groom) -> Result<(), SceneError> {
-    let (points, strands) = (groom.points.len(), groom.strands());
-    let whole = groom.offsets.len() == strands + 1
-        && groom.widths.len() == points
-        && groom.offsets.windows(2).all(|o| o[0] <= o[1])
-        && groom.offsets.last().is_some_and(|&o| o as usize == points);
-    if !whole {
-        return Err(SceneError::Groom { strands, points });
-    }
-    let limit = LIMIT / UNITS_PER_METER;
-    for (i, (p, w)) in groom.points.iter().zip(&groom.widths).enumerate() {
-        if !p.is_finite() || p.abs().max_element() > limit || !(0.0..=limit).contains(w) {
-            return Err(SceneError::Point {
-                index: i,
-                at: *p,
-                width: *w,
-            });
-        }
-    }
-    Ok(())
 }

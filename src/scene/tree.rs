@@ -11,6 +11,7 @@ mod node;
 
 pub(super) use lanes::Lanes;
 
+use super::ribbon::Segment;
 use crate::accel::Ray;
 use crate::pages::Table;
 use glam::Vec4;
@@ -47,6 +48,8 @@ pub(super) struct Found {
     pub(super) run: u32,
     /// First or second segment of the run.
     pub(super) half: u32,
+    /// Where the run lies: its leaf and its place there.
+    place: u32,
 }
 
 /// Runs behind boxes.
@@ -83,8 +86,24 @@ impl Tree {
     /// The joint of a run, `0..=2`.
     #[inline]
     pub(super) fn joint(&self, run: u32, joint: usize) -> Vec4 {
-        let place = self.places[run as usize] as usize;
+        self.joint_at(self.places[run as usize], joint)
+    }
+
+    #[inline]
+    fn joint_at(&self, place: u32, joint: usize) -> Vec4 {
+        let place = place as usize;
         self.leaves[place / leaf::RUNS].joint(place % leaf::RUNS, joint)
+    }
+
+    /// The segment that was met, to the bit as rays meet it: where two runs join, each has the joint rounded in its own
+    /// way.
+    #[inline]
+    pub(super) fn segment(&self, found: &Found) -> Segment {
+        let half = found.half as usize;
+        Segment {
+            root: self.joint_at(found.place, half),
+            tip: self.joint_at(found.place, half + 1),
+        }
     }
 
     /// The nearest segment up to `limit`; of equal distances the first segment.
@@ -241,7 +260,13 @@ impl Tree {
             };
             if is_first && !(t < ignored.clear && (ignored.first..ignored.end).contains(&run)) {
                 *limit = t;
-                *found = Some(Found { t, run, half });
+                let place = number * leaf::RUNS as u32 + lane % leaf::RUNS as u32;
+                *found = Some(Found {
+                    t,
+                    run,
+                    half,
+                    place,
+                });
             }
         }
     }

@@ -120,7 +120,13 @@ fn every(tree: &Tree, runs: &[Run], ray: &Ray, limit: f32, ignored: &Ignored) ->
             };
             let is_ignored = t < ignored.clear && (ignored.first..ignored.end).contains(&run);
             if t > 0.0 && t <= limit && !is_ignored && best.is_none_or(|b| t < b.t) {
-                best = Some(Found { t, run, half });
+                let place = tree.places[run as usize];
+                best = Some(Found {
+                    t,
+                    run,
+                    half,
+                    place,
+                });
             }
         }
     }
