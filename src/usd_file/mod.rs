@@ -2,7 +2,7 @@
 //! files of version 0.4.0 and later, and the first layer of a `.usdz` package.
 //!
 //! In: the bytes of a file. Out: a [`Layer`], prims with their properties and metadata as they stand in
-//! the file, of which [`compose`] makes the prims that a reader sees. Values that no check looks at are
+//! the file, of which [`compose()`] makes the prims that a reader sees. Values that no check looks at are
 //! kept as [`Value::Unread`].
 //!
 //! Files are not trusted: nothing is allocated for a count before the file is known to be long enough

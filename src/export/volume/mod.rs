@@ -189,7 +189,7 @@ pub fn write<W: Write + Seek>(
     Ok((writer.finish()?, written))
 }
 
-/// Fills the grids one after the other, in the order of [`write`].
+/// Fills the grids one after the other, in the order of [`write()`].
 ///
 /// * `skin`: the mesh for [`Field::Surface`].
 /// * `put`: takes each grid when it is full.

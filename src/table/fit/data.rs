@@ -30,6 +30,10 @@ pub(super) struct Data {
     pub(super) weight: Vec<f64>,
     /// Per channel, the weighted sum of squares.
     pub(super) square: Vec<f64>,
+    /// Share of even light that each query stands for; they add up to 1.
+    pub(super) seen: Vec<f64>,
+    /// Per channel, the share of even light that is scattered.
+    pub(super) albedo: Vec<f64>,
 }
 
 impl Data {
@@ -64,6 +68,11 @@ impl Data {
                 .collect(),
             density: Vec::new(),
             square: Vec::new(),
+            seen: shares(&used, |n| {
+                let sines = nodes.edges[n + 1].sin() - nodes.edges[n].sin();
+                nodes.centers[n].cos() * sines
+            }),
+            albedo: Vec::new(),
             edges,
         };
         let bins = bins(table.res(), &data.edges);
@@ -98,10 +107,21 @@ impl Data {
                 .map(|(i, d)| data.weight[i / COLUMNS] * d * d)
                 .sum::<f64>();
             data.square.push(square.max(f64::MIN_POSITIVE));
+            let scattered = used.iter().zip(&data.seen).map(|(&n, seen)| {
+                let flux = &flux[n * texels..(n + 1) * texels];
+                seen * flux.iter().map(|&f| f64::from(f)).sum::<f64>()
+            });
+            data.albedo.push(scattered.sum());
             data.density.push(density);
         }
         data
     }
+}
+
+/// Weights of nodes as shares of their sum.
+fn shares(nodes: &[usize], weight: impl Fn(usize) -> f64) -> Vec<f64> {
+    let all: f64 = nodes.iter().map(|&n| weight(n)).sum();
+    nodes.iter().map(|&n| weight(n) / all).collect()
 }
 
 /// For every point of every texel the bin that holds it.

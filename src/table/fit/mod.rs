@@ -1,8 +1,10 @@
 //! Hair models fitted to tables: how well can a shader in closed form stand for a baked fiber?
 //!
 //! The error that is made least is the same relative L2 distance of S as in [`super::compare()`], over
-//! bins of 2 by 5 degrees, of all channels together; index, roughness and tilt are common to all channels,
-//! absorption is each channel's own.
+//! bins of 2 by 5 degrees, of all channels together; index, roughness and tilt are common to all channels.
+//! Absorption is each channel's own and not free: it is what makes the model scatter as much of even
+//! light as the table does. A coat's color is that share many times over, and the least error of S alone
+//! trades it for the height of a lobe: red fox would come out gray.
 
 mod data;
 mod least_squares;
@@ -16,7 +18,6 @@ pub use model::Model;
 use super::{TableError, TableRef};
 use data::{COLUMNS, Data};
 use lobes::Lobe;
-use model::ABSORPTION;
 use rayon::prelude::*;
 
 /// A model with the parameters that come closest to a table.
@@ -80,23 +81,23 @@ impl Model {
             ));
         }
         let shared = self.shared();
-        let count = shared.len();
-        let mut ranges: Vec<[f64; 2]> = shared.iter().map(|s| s.range).collect();
-        ranges.extend(channels.iter().map(|_| ABSORPTION.range));
-        let residuals = |p: &[f64]| self.residuals(&data, &p[..count], &p[count..]);
+        let ranges: Vec<[f64; 2]> = shared.iter().map(|s| s.range).collect();
+        let queries = data.queries.iter().copied().zip(data.seen.iter().copied());
+        let queries: Vec<(f64, f64)> = queries.collect();
+        let absorption = |p: &[f64]| self.absorption(&queries, p, &data.albedo);
+        let residuals = |p: &[f64]| self.residuals(&data, p, &absorption(p));
         let mut best: Option<(Vec<f64>, f64)> = None;
         // Narrow and wide lobes have their own valleys.
         for roughness in [0.2, 0.5] {
             let mut start: Vec<f64> = shared.iter().map(|s| s.start).collect();
             (start[1], start[2]) = (roughness, roughness);
-            start.extend(channels.iter().map(|_| ABSORPTION.start));
             let found = least_squares::minimize(&start, &ranges, residuals);
             if best.as_ref().is_none_or(|(_, least)| found.1 < *least) {
                 best = Some(found);
             }
         }
         let p = best.map(|(p, _)| p).unwrap_or_default();
-        Ok(self.report(&data, &p[..count], &p[count..]))
+        Ok(self.report(&data, &p, &absorption(&p)))
     }
 
     /// Weighted differences in shares of each channel's norm.

@@ -7,6 +7,7 @@ use super::lobes::{
     Entry, Lobe, OFFSETS, add_logistic, along, entries, exit_azimuth, logistic_scale, variance,
 };
 use crate::math::fresnel;
+use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// A model of hair or fur that can be fitted to a table.
@@ -56,8 +57,8 @@ const DOUBLE_CYLINDER: [Shared; 13] = [
     shared("rho_b", [0.0, 0.95], 0.3),
 ];
 
-/// Range and start of the absorption of a channel, per radius.
-pub(super) const ABSORPTION: Shared = shared("sigma_a", [0.0, 30.0], 0.3);
+/// Most absorption of a channel, per radius: what crosses the fiber then is gone.
+const MOST_ABSORPTION: f64 = 30.0;
 
 impl Model {
     /// What it is called on the command line.
@@ -83,6 +84,54 @@ impl Model {
         }
     }
 
+    /// The absorption with which even light is scattered by the given shares; the most or none where no
+    /// absorption does that.
+    ///
+    /// * `queries`: inclinations, radians, each with its share of the light. * `p`: the shared parameters.
+    pub(super) fn absorption(self, queries: &[(f64, f64)], p: &[f64], albedo: &[f64]) -> Vec<f64> {
+        let medulla = self.medulla(p);
+        let rays: Vec<(Entry, f64)> = queries
+            .iter()
+            .flat_map(|&(theta, share)| {
+                entries(p[0], theta).map(move |entry| (entry, share / OFFSETS as f64))
+            })
+            .collect();
+        let scattered = |sigma: f64| -> f64 {
+            let of = |(entry, share): &(Entry, f64)| {
+                share
+                    * energies(entry, p[0], sigma, medulla.as_ref())
+                        .iter()
+                        .sum::<f64>()
+            };
+            rays.iter().map(of).sum()
+        };
+        let solve = |&albedo: &f64| {
+            let [mut lo, mut hi] = [0.0, MOST_ABSORPTION];
+            // Down to 1e-9: derivatives of the fit are differences.
+            for _ in 0..35 {
+                let middle = 0.5 * (lo + hi);
+                match scattered(middle) > albedo {
+                    true => lo = middle,
+                    false => hi = middle,
+                }
+            }
+            0.5 * (lo + hi)
+        };
+        albedo.par_iter().map(solve).collect()
+    }
+
+    fn medulla(self, p: &[f64]) -> Option<Medulla> {
+        match self {
+            Self::Chiang => None,
+            Self::DoubleCylinder => Some(Medulla {
+                layers: p[4],
+                kappa: p[5],
+                scattering: p[6],
+                path: p[9],
+            }),
+        }
+    }
+
     /// The lobes for one query.
     ///
     /// * `edges`: of the rows of inclinations. * `p`: the shared parameters in their order.
@@ -94,15 +143,7 @@ impl Model {
         p: &[f64],
         absorption: &[f64],
     ) -> Vec<Lobe> {
-        let medulla = match self {
-            Self::Chiang => None,
-            Self::DoubleCylinder => Some(Medulla {
-                layers: p[4],
-                kappa: p[5],
-                scattering: p[6],
-                path: p[9],
-            }),
-        };
+        let medulla = self.medulla(p);
         let v = variance(p[1]);
         let scale = logistic_scale(p[2]);
         let alpha = p[3].to_radians();

@@ -103,6 +103,41 @@ fn the_parameters_of_chiang_are_recovered() {
     assert!(fit.lobes.iter().all(|l| (l.table - l.model).abs() < 0.01));
 }
 
+/// Whatever the fiber does, as much light is left as the table says.
+#[test]
+fn the_color_is_kept_where_lobes_are_not() {
+    let mut maps = chiang([0.1, 0.3, 0.8]);
+    let cube = Unicube::new(maps.res);
+    for (i, rgb) in maps.rgb.iter_mut().enumerate() {
+        let even = 0.4 * cube.solid_angle(i % cube.texels()) / (4.0 * PI);
+        *rgb = rgb.map(|f| 0.5 * f + even as f32);
+    }
+    let data = Data::new(TableRef::from(&maps), &[0, 1, 2]);
+    for model in [Model::Chiang, Model::DoubleCylinder] {
+        let fit = model.fit(&maps, &[0, 1, 2]).unwrap();
+        let p: Vec<f64> = fit.shared.iter().map(|s| s.1).collect();
+        for (channel, &expected) in data.albedo.iter().enumerate() {
+            // All the way around, of every inclination.
+            let edges: Vec<f64> = (0..=180)
+                .map(|i| (f64::from(i) - 90.0).to_radians())
+                .collect();
+            let of = |(&theta, seen): (&f64, &f64)| {
+                let lobes = model.evaluate(theta, &edges, &p, &fit.absorption);
+                let rows = edges.windows(2).enumerate().map(|(row, e)| {
+                    let around: f64 = sum_of(&lobes, channel, row).iter().sum();
+                    around * 2.0 * PI / COLUMNS as f64 * (e[1].sin() - e[0].sin())
+                });
+                seen * rows.sum::<f64>()
+            };
+            let found: f64 = data.queries.iter().zip(&data.seen).map(of).sum();
+            assert!(
+                (found / expected - 1.0).abs() < 0.01,
+                "{found} {expected} {fit:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn a_lobe_that_is_not_there_shows() {
     // A fifth of the light scattered evenly is beyond Chiang's model; the double cylinder has it.
