@@ -29,6 +29,17 @@ fn refused(arguments: &[&str], words: &[&str]) {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
+/// Fewer strands than classes: one level of what there is.
+#[test]
+fn a_single_strand_is_an_asset() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = export(folder.path(), &["--strands", "1", "-o", "fox.usda"]);
+    assert!(output.status.success(), "{output:?}");
+    let text = fs::read_to_string(folder.path().join("fox.usda")).unwrap();
+    // Once to render, once for viewports.
+    assert_eq!(text.matches("def BasisCurves \"under\"").count(), 2);
+}
+
 #[test]
 fn what_cannot_be_written_is_refused_with_a_remedy() {
     refused(&["-o", "fox.abc"], &["fox.abc", ".usdc"]);

@@ -1,7 +1,7 @@
 //! Writes assets of every kind with their numbers beside them, for `tests/clients/usd.sh` to have them
 //! read by Pixar's library: target/tmp/usd/NAME.usda and .usdc and, as plain numbers, NAME.raw.
 //! What .raw holds: `raw/arrays.rs`. Numbers of a coarser level are of a groom that was grown with fewer
-//! strands.
+//! strands, but for their widths, which are those of the full one times what the level says.
 
 #![allow(clippy::unwrap_used)]
 
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use vair::assembly::looks;
 use vair::bake::Settings;
 use vair::export::asset::{
-    AssetSettings, Curves, Frame, Parts, Profile, Reader, Units, Up, Wear, levels, write,
+    AssetSettings, Curves, Frame, Level, Parts, Profile, Reader, Units, Up, Wear, levels, write,
 };
 use vair::groom::{Groom, GroomSettings, grow};
 use vair::progress::{Cancel, Silent};
@@ -36,6 +36,19 @@ fn grown(skin: &Skin, species: &Species, strands: usize) -> Groom {
         seed: 5,
     };
     grow(skin, species, &settings, &Silent, &Cancel::default()).unwrap()
+}
+
+/// A groom of fewer strands with the widths of a level of the full one.
+fn widened(mut groom: Groom, full: &Groom, level: &Level) -> Groom {
+    for (class, part) in level.classes.iter().enumerate() {
+        let own = (0..groom.strands()).filter(|&s| usize::from(groom.class[s]) == class);
+        for (few, &many) in own.collect::<Vec<_>>().into_iter().zip(part.strands.iter()) {
+            for (to, from) in groom.range(few).zip(full.range(many as usize)) {
+                groom.widths[to] = full.widths[from] * part.widening;
+            }
+        }
+    }
+    groom
 }
 
 fn export(name: &str, species: &str, skin: &str, count: usize, settings: &AssetSettings) {
@@ -89,7 +102,7 @@ fn export(name: &str, species: &str, skin: &str, count: usize, settings: &AssetS
     };
     let mut numbers = Raw::default();
     for (level, share) in levels.iter().zip([1, 4, 16]) {
-        let groom = grown(&skin, &species, STRANDS / share);
+        let groom = widened(grown(&skin, &species, STRANDS / share), &groom, level);
         for (class, class_name) in groom.classes.iter().enumerate() {
             let lod = match count {
                 1 => String::new(),

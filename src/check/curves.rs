@@ -102,10 +102,9 @@ impl<'s> Curves<'s> {
                     return None;
                 }
                 let of_strand = |&count: &i64| match (self.is_cubic, self.basis, self.wrap) {
-                    (false, ..) | (true, _, "pinned") => count,
                     (true, "bezier", "periodic") => count / 3,
                     (true, "bezier", _) => (count - 4) / 3 + 2,
-                    (true, _, "periodic") => count,
+                    (false, ..) | (true, _, "pinned" | "periodic") => count,
                     _ => count - 2,
                 };
                 self.counts

@@ -16,6 +16,11 @@ use glam::DVec3;
 const MOST_LARGER: f64 = 10.0;
 const LEAST_COMMON: f64 = 0.3;
 
+/// Whether a prim stands below another.
+fn is_below(path: &str, above: &str) -> bool {
+    (path.strip_prefix(above)).is_some_and(|rest| rest.starts_with('/'))
+}
+
 /// Where strands or grids of a file lie.
 #[derive(Clone, Debug)]
 pub(super) struct Region {
@@ -130,7 +135,7 @@ pub(super) fn check_extents(items: &[Item<'_>], regions: &[Region], findings: &m
         let (lo, hi) = bounds(extent);
         let own = regions
             .iter()
-            .filter(|r| r.is_volume && r.place.1.starts_with(&volume.path));
+            .filter(|r| r.is_volume && is_below(&r.place.1, &volume.path));
         for region in own {
             if let Some((severity, what)) =
                 apart((lo.as_dvec3(), hi.as_dvec3()), (region.lo, region.hi))

@@ -152,6 +152,7 @@ fn paths_of_value(at: &str, name: &str, value: &Value, out: &mut Paths) {
     };
     match value {
         Value::Asset(path) => push(path),
+        Value::Texts(all) if name == "subLayers" => all.iter().for_each(push),
         Value::References(references) => references.iter().for_each(|r| push(&r.asset)),
         Value::Dictionary(entries) => {
             for (_, value) in entries {

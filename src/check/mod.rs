@@ -109,8 +109,11 @@ pub fn check<P: AsRef<Path>>(
         regions.extend(lie);
         frames::check_frames(&regions, &mut findings);
         let known = |f: &Finding| {
-            all.iter()
-                .any(|other: &Finding| f.rule == Rule::C20 && f.message == other.message)
+            all.iter().any(|other: &Finding| {
+                f.rule == Rule::C20
+                    && (&f.prim, &f.attribute, &f.message)
+                        == (&other.prim, &other.attribute, &other.message)
+            })
         };
         findings.all.retain(|f| !known(f));
         findings.all.sort_by_key(|f| f.rule);

@@ -9,8 +9,8 @@ use Consumer::{Ar, Validators};
 use Severity::Error;
 
 /// What a package may hold.
-const ALLOWED: [&str; 11] = [
-    "usd", "usda", "usdc", "usdz", "png", "jpg", "jpeg", "exr", "avif", "m4a", "mp3",
+const ALLOWED: [&str; 12] = [
+    "usd", "usda", "usdc", "usdz", "png", "jpg", "jpeg", "exr", "avif", "m4a", "mp3", "wav",
 ];
 
 /// Members begin at multiples of so many bytes.

@@ -27,7 +27,8 @@ pub(super) fn items(roots: &[Prim]) -> Vec<Item<'_>> {
 
 /// * `above`: place of the parent among the items.
 fn visit<'s>(prim: &'s Prim, above: Option<usize>, items: &mut Vec<Item<'s>>) {
-    if prim.specifier != Specifier::Def {
+    let is_pruned = matches!(prim.field("active").and_then(Value::number), Some(0.0));
+    if prim.specifier != Specifier::Def || is_pruned {
         return;
     }
     let above = above.map(|parent| &items[parent]);

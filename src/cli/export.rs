@@ -223,6 +223,17 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         for warning in &groom.warnings {
             console.say(format!("warning: {warning}"));
         }
+        if grooms
+            .first()
+            .is_some_and(|(first, _): &(groom::Groom, _)| first.id != groom.id)
+        {
+            let first = &dressed[0].name;
+            let message = format!(
+                "coat {name} has other strands than {first}: trim_mm cuts what coats shorten"
+            );
+            let help = "write each coat to a file of its own with --coat, or leave out trim_mm";
+            return Err(Failure::with_help(Blame::Input, message, help));
+        }
         grooms.push((groom, looks));
     }
     let species = &dressed[0].species;
@@ -361,7 +372,8 @@ fn announce(
         args.coats.len(),
         settings,
     );
-    let memory = 2 * (points * OF_POINT + strands * OF_STRAND);
+    // All coats are there at once.
+    let memory = 2 * args.coats.len().max(1) * (points * OF_POINT + strands * OF_STRAND);
     if !writes_usd(args)? {
         return Ok(());
     }

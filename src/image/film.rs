@@ -3,7 +3,7 @@
 use super::cryptomatte::Cryptomatte;
 use super::view::ViewTransform;
 use super::write_png;
-use crate::io::{AtomicFile, FileError, sort_exr_attributes};
+use crate::io::{AtomicFile, FileError, exr_text, sort_exr_attributes};
 use crate::render::{Film, Pixel};
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image,
@@ -75,13 +75,13 @@ fn encode(film: &Film, provenance: &Provenance<'_>) -> Image<Layer<AnyChannels<F
     let json = serde_json::Value::Object(text).to_string();
     layer.other.insert(
         Text::new_or_panic(PROVENANCE_ATTRIBUTE),
-        AttributeValue::Text(Text::from(json.as_str())),
+        AttributeValue::Text(exr_text(&json)),
     );
     let mut channels = channels(film);
     if let Some(mattes) = &film.mattes {
         for set in Cryptomatte::of(mattes) {
             let attributes = set.attributes().into_iter();
-            let text = |text: String| AttributeValue::Text(Text::from(text.as_str()));
+            let text = |text: String| AttributeValue::Text(exr_text(&text));
             (layer.other).extend(attributes.map(|(name, value)| (name, text(value))));
             channels.extend(set.channels(film, mattes));
         }
@@ -171,7 +171,11 @@ mod tests {
     fn all_passes_come_back_and_the_bytes_repeat() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
-        let provenance = [("species", "name = \"x\""), ("seed", "3"), ("settings", "")];
+        let provenance = [
+            ("species", "name = \"λ–白é\""),
+            ("seed", "3"),
+            ("settings", ""),
+        ];
         write_film_exr(&path, &film(), &provenance).unwrap();
         let bytes = std::fs::read(&path).unwrap();
         for _ in 0..8 {
@@ -193,8 +197,8 @@ mod tests {
         let AttributeValue::Text(json) = attribute else {
             panic!("{attribute:?}")
         };
-        let json: serde_json::Value = serde_json::from_str(&json.to_string()).unwrap();
-        assert_eq!(json["species"], "name = \"x\"");
+        let json: serde_json::Value = serde_json::from_slice(json.as_slice()).unwrap();
+        assert_eq!(json["species"], "name = \"λ–白é\"");
         let channel = |name: &str| {
             let found = layer.channel_data.list.iter().find(|c| c.name.eq(name));
             found

@@ -1,4 +1,12 @@
-//! Reproducible OpenEXR headers.
+//! Reproducible OpenEXR headers, in any script.
+
+use exr::prelude::{SmallVec, Text};
+
+/// UTF-8 bytes as they are: OpenEXR does not care, and Python decodes them. The crate's own conversion panics
+/// beyond Latin letters.
+pub fn exr_text(value: &str) -> Text {
+    Text::from_bytes_unchecked(SmallVec::from_slice(value.as_bytes()))
+}
 
 /// Sorts the attributes of every header of a finished EXR file by name, in place.
 ///

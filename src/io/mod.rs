@@ -7,7 +7,7 @@ mod picture;
 mod stale;
 
 pub use atomic::{AtomicFile, FileError, check_writable, read_bounded};
-pub use exr::sort_exr_attributes;
+pub use exr::{exr_text, sort_exr_attributes};
 pub(crate) use exr_pixels::{Decoded, decode_exr};
 
 #[cfg(test)]

@@ -13,6 +13,9 @@ use std::sync::Arc;
 /// Most prims of a stage.
 const MOST_PRIMS: usize = 1_000_000;
 
+/// So many properties and fields count as one more prim.
+const PROPERTIES_OF_PRIM: usize = 64;
+
 /// Most files that refer to one another in a row.
 const LONGEST_CHAIN: usize = 16;
 
@@ -141,6 +144,10 @@ impl Composer<'_, '_> {
             && chain < LONGEST_CHAIN
         {
             for sublayer in sublayers {
+                let Some(left) = self.room.checked_sub(1) else {
+                    break;
+                };
+                self.room = left;
                 if let Some(layer) = self.files.layer(&sublayer.asset) {
                     let below = Prim {
                         children: self.layer(&layer, chain + 1),
@@ -164,14 +171,18 @@ impl Composer<'_, '_> {
         depth: usize,
         chain: usize,
     ) -> Option<Prim> {
-        self.room = self.room.checked_sub(1)?;
+        let size = 1 + (spec.properties.len() + spec.metadata.len()) / PROPERTIES_OF_PRIM;
+        self.room = self.room.checked_sub(size)?;
         if depth > DEEPEST || chain > LONGEST_CHAIN {
             return None;
         }
         let mut prim = Prim {
-            children: Vec::new(),
-            variant_sets: Vec::new(),
-            ..spec.clone()
+            name: spec.name.clone(),
+            specifier: spec.specifier,
+            type_name: spec.type_name.clone(),
+            metadata: spec.metadata.clone(),
+            properties: spec.properties.clone(),
+            ..Prim::default()
         };
         for child in &spec.children {
             let below = format!("{path}/{}", child.name);

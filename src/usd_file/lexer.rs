@@ -224,7 +224,11 @@ impl<'t> Lexer<'t> {
 
     fn number(&mut self) -> Result<Token, UsdFileError> {
         let text = self.run(|c| c.is_ascii_alphanumeric() || matches!(c, b'-' | b'+' | b'.'));
-        if let Ok(int) = text.parse() {
+        // Unsigned ones beyond half of their range keep their bits.
+        let int = text
+            .parse()
+            .or_else(|_| text.parse::<u64>().map(|n| n as i64));
+        if let Ok(int) = int {
             return Ok(Token::Int(int));
         }
         let number = text.parse().map(Token::Number);

@@ -186,6 +186,8 @@ def Xform "a" (
     prepend rel things = </a/b>
     rel nothing
     int[] empty = []
+    uint64[] hashes = [18446744073709551615, 3]
+    double bent.spline = { bezier, pre: held, 1: 8; post curve (1, 2); 2: 9, { int x = 1 } }
     reorder properties = ["m"]
     class "b" {}
     variantSet "look" = {
@@ -204,6 +206,7 @@ def Xform "a" (
     );
     assert_eq!(a.value("flags"), Some(&Value::Ints([1, 1, 0].into())));
     assert_eq!(a.value("empty"), Some(&Value::Ints([].into())));
+    assert_eq!(a.value("hashes"), Some(&Value::Ints([-1, 3].into())));
     assert_eq!(a.property("inputs:x").unwrap().targets, ["/a.y", "/a.z"]);
     let points = a.property("points").unwrap();
     assert_eq!(
@@ -253,6 +256,18 @@ def Xform "b" (variants = {string lod = "full"}) {
     let prims = compose(&root, Path::new("folder/a.usda"), &mut files, &full);
     assert_eq!(number(&prims), Some(9.0));
     assert_eq!(files.missing, ["folder/z.usda"]);
+}
+
+/// A layer of ten of itself would be 10^16 layers.
+#[test]
+fn layers_of_themselves_end() {
+    let itself = ["@./a.usda@"; 10].join(", ");
+    let text = format!("#usda 1.0\n( subLayers = [{itself}] )\ndef \"a\" {{}}\n");
+    let layer = parse(text.as_bytes()).unwrap();
+    let open = |_: &Path| parse(text.as_bytes()).ok();
+    let mut files = Files::new(&open);
+    let prims = compose(&layer, Path::new("a.usda"), &mut files, &[]);
+    assert_eq!(prims.len(), 1);
 }
 
 /// No panic and no great allocation, whatever is changed; every prefix of a crate file is refused.

@@ -178,12 +178,29 @@ impl Parser<'_> {
                 "" if is_relationship => self.targets(edit.as_deref(), property)?,
                 "" => property.value = Some(self.value(Kind::of(&type_name))?),
                 // Splines and what else there may be.
-                _ => drop(self.value(Kind::Any)?),
+                _ => self.skip_value()?,
             }
         }
         if self.lexer.accept(b'(')? {
             let metadata = self.metadata()?;
             prim.properties[at].metadata.extend(metadata);
+        }
+        Ok(())
+    }
+
+    /// Steps over a value whose form is not known: one word, list or tuple, or all between braces.
+    fn skip_value(&mut self) -> Result<(), Error> {
+        if !self.lexer.accept(b'{')? {
+            return self.value(Kind::Any).map(drop);
+        }
+        let mut open = 1;
+        while open > 0 {
+            match self.lexer.take()? {
+                Token::Sign(b'{') => open += 1,
+                Token::Sign(b'}') => open -= 1,
+                Token::End => return Err(self.lexer.error("the file ends within a value")),
+                _ => {}
+            }
         }
         Ok(())
     }

@@ -88,12 +88,14 @@ pub fn read(bytes: &[u8]) -> Result<VdbFacts, VdbFileError> {
         let type_name = stream.text()?;
         let parent = stream.text()?;
         let [grid_at, blocks_at, end] = [stream.u64()?, stream.u64()?, stream.u64()?];
+        let is_instance = !parent.is_empty();
+        // An instance has no blocks of its own, and says nothing of where they are.
+        let blocks_at = if is_instance { grid_at } else { blocks_at };
         if !(stream.at() <= grid_at && grid_at <= blocks_at && blocks_at <= end) {
             return Err(stream.error("a grid ends before it begins").into());
         }
         // The part after a sign tells grids of the same name apart.
         let name = name.split('\u{1e}').next().unwrap_or_default().to_owned();
-        let is_instance = !parent.is_empty();
         // Each stands behind the one before, so that nothing is read twice.
         let own = &bytes[..usize::try_from(end).unwrap_or(usize::MAX).min(bytes.len())];
         let at = [grid_at, blocks_at];

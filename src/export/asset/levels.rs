@@ -46,14 +46,22 @@ pub fn levels(
     species: &Species,
     count: usize,
 ) -> Result<Vec<Level>, GroomError> {
-    let mut parts = Vec::new();
-    let mut strands = groom.strands();
-    for _ in NAMES.into_iter().take(count.max(1)) {
-        if strands < groom.classes.len().max(1) {
-            break;
-        }
+    let mut all = vec![0; groom.classes.len()];
+    for &class in &groom.class {
+        all[usize::from(class)] += 1;
+    }
+    // Coarser levels share strands among classes as so small a groom would, as far as each has grown.
+    let shares = |strands| -> Result<Vec<usize>, GroomError> {
         let plan = forecast(skin, species, Some(strands))?;
-        parts.push(plan.classes.iter().map(|c| c.strands).collect::<Vec<_>>());
+        Ok(plan.classes.iter().map(|c| c.strands).collect())
+    };
+    let mut parts = vec![all.clone()];
+    let planned = shares(groom.strands().max(1))?;
+    let mut strands = groom.strands() / SHARE;
+    while parts.len() < count.min(NAMES.len()) && strands >= groom.classes.len().max(1) {
+        let plan = shares(strands)?;
+        let kept = |i: usize| (all[i] * plan[i] / planned[i].max(1)).min(all[i]);
+        parts.push((0..all.len()).map(kept).collect());
         strands /= SHARE;
     }
     let thinner = parts.get(1..).unwrap_or_default();

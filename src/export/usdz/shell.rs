@@ -154,6 +154,12 @@ fn share(sums: &mut Vec<Sums>, triangles: &[[u32; 3]], bare: &[bool], strands: u
                 }
             }
         }
+        // Means stay as they are, and no sum of many rounds overflows.
+        for sum in &mut next {
+            sum.weight *= 0.125;
+            sum.height *= 0.125;
+            sum.color *= 0.125;
+        }
         *sums = next;
     }
 }

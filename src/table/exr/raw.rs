@@ -1,13 +1,13 @@
 //! Parts of named channels of any type and size, to and from the bytes of an OpenEXR file.
 
 use super::attributes::{Attributes, Value};
-use crate::io::sort_exr_attributes;
+use crate::io::{exr_text, sort_exr_attributes};
 use crate::table::TableError;
 use exr::meta::header::Header;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Compression, Encoding, FlatSamples, Image,
     ImageAttributes, IntegerBounds, Layer, LayerAttributes, LineOrder, ReadChannels, ReadLayers,
-    SmallVec, Text, Vec2, WritableImage,
+    Text, Vec2, WritableImage,
 };
 use std::io::Cursor;
 use std::path::Path;
@@ -39,14 +39,15 @@ pub(super) fn encode(parts: Vec<RawPart>, path: &Path) -> Result<Vec<u8>, TableE
     let layers: Vec<_> = parts
         .into_iter()
         .map(|part| {
-            let mut attributes = LayerAttributes::named(text(&part.name));
-            attributes.software_name = Some(text("vair"));
+            let mut attributes = LayerAttributes::named(exr_text(&part.name));
+            attributes.software_name = Some(exr_text("vair"));
             for (name, value) in &part.attributes.0 {
-                let name = text(&format!("{PREFIX}{name}"));
+                let name = exr_text(&format!("{PREFIX}{name}"));
                 attributes.other.insert(name, to_exr(value));
             }
             let channels = part.channels.into_iter();
-            let channels = channels.map(|(name, samples)| AnyChannel::new(text(&name), samples));
+            let channels =
+                channels.map(|(name, samples)| AnyChannel::new(exr_text(&name), samples));
             Layer::new(
                 Vec2(part.width, part.height),
                 attributes,
@@ -118,7 +119,7 @@ pub(super) fn decode(
 
 /// The format version that the first header claims, if any.
 pub(super) fn format(headers: &[Header]) -> Option<i32> {
-    let name = text(&format!("{PREFIX}format"));
+    let name = exr_text(&format!("{PREFIX}format"));
     match headers.first()?.own_attributes.other.get(&name)? {
         AttributeValue::I32(format) => Some(*format),
         _ => None,
@@ -146,16 +147,11 @@ fn part(layer: Layer<AnyChannels<FlatSamples>>) -> RawPart {
     }
 }
 
-/// UTF-8 bytes as they are: OpenEXR does not care, and Python decodes them.
-fn text(value: &str) -> Text {
-    Text::from_bytes_unchecked(SmallVec::from_slice(value.as_bytes()))
-}
-
 fn to_exr(value: &Value) -> AttributeValue {
     match value {
         Value::Int(value) => AttributeValue::I32(*value),
         Value::Double(value) => AttributeValue::F64(*value),
-        Value::Text(value) => AttributeValue::Text(text(value)),
+        Value::Text(value) => AttributeValue::Text(exr_text(value)),
     }
 }
 

@@ -41,6 +41,9 @@ pub(super) fn integers<const WIDTH: usize>(
     packed: &[u8],
     count: u64,
 ) -> Result<Vec<i64>, UsdFileError> {
+    if count == 0 {
+        return Ok(Vec::new());
+    }
     let width = WIDTH as u64;
     let codes = count.div_ceil(4);
     let plain = decompress(packed, width + codes + width * count)?;

@@ -181,6 +181,8 @@ fn paths(mut cursor: Cursor<'_>) -> Result<Vec<Path>, UsdFileError> {
         depth: 0,
     };
     let mut paths = vec![root; count as usize];
+    // Each stands in the tree once, else there would be loops.
+    let mut seen = vec![false; count as usize];
     // Parents of siblings that come behind the children of others.
     let mut waiting: Vec<(usize, u32)> = Vec::new();
     let (mut at, mut parent, mut first) = (0usize, u32::MAX, true);
@@ -200,6 +202,11 @@ fn paths(mut cursor: Cursor<'_>) -> Result<Vec<Path>, UsdFileError> {
         let Some(path) = paths.get_mut(index as usize) else {
             return Err(cursor.error(format!("path {index} of {count}")).into());
         };
+        if std::mem::replace(&mut seen[index as usize], true) {
+            return Err(cursor
+                .error(format!("path {index} stands twice in the tree"))
+                .into());
+        }
         if !first && depth == 0 {
             return Err(cursor.error("the tree of paths has two roots").into());
         }
