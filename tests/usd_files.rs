@@ -170,15 +170,16 @@ fn coats_to_choose_from() {
                 cat.wear(name).unwrap();
                 let groom = grown(&skin, &cat, STRANDS);
                 let looks = looks(&cat, &bake, None, progress, cancel).unwrap();
-                (cat, groom, looks)
+                let levels = levels(&groom, &skin, &cat, 2).unwrap();
+                (cat, groom, looks, levels)
             })
             .collect();
-        let levels = levels(&dressed[0].1, &skin, &dressed[0].0, 2).unwrap();
         let wears: Vec<Wear<'_>> = (names.iter().zip(&dressed))
-            .map(|(name, (species, groom, looks))| Wear {
+            .map(|(name, (species, groom, looks, levels))| Wear {
                 name,
                 species,
                 groom,
+                levels,
                 looks,
             })
             .collect();
@@ -186,7 +187,7 @@ fn coats_to_choose_from() {
             groom: wears[i].groom,
             skin: &skin,
             species: wears[i].species,
-            levels: &levels,
+            levels: wears[i].levels,
             looks: wears[i].looks,
             coats,
             seed: 5,

@@ -15,7 +15,7 @@ use crate::export::asset::{
 };
 use crate::export::usd::Form;
 use crate::export::{ExportError, Format};
-use crate::groom::{self, Forecast, GroomSettings};
+use crate::groom::{self, Forecast, Groom, GroomSettings};
 use crate::io::check_writable;
 use crate::skin::Skin;
 use crate::species::Species;
@@ -223,10 +223,8 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         for warning in &groom.warnings {
             console.say(format!("warning: {warning}"));
         }
-        if grooms
-            .first()
-            .is_some_and(|(first, _): &(groom::Groom, _)| first.id != groom.id)
-        {
+        let first = grooms.first().map(|(groom, ..): &(Groom, _, _)| groom);
+        if first.is_some_and(|first| first.id != groom.id) {
             let first = &dressed[0].name;
             let message = format!(
                 "coat {name} has other strands than {first}: trim_mm cuts what coats shorten"
@@ -234,17 +232,18 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
             let help = "write each coat to a file of its own with --coat, or leave out trim_mm";
             return Err(Failure::with_help(Blame::Input, message, help));
         }
-        grooms.push((groom, looks));
+        let levels = asset::levels(&groom, &skin, species, args.levels)?;
+        grooms.push((groom, looks, levels));
     }
     let species = &dressed[0].species;
-    let (groom, looks) = &grooms[0];
-    let levels = asset::levels(groom, &skin, species, args.levels)?;
+    let (groom, looks, levels) = &grooms[0];
     let wears = dressed.iter().zip(&grooms);
     let wears: Vec<Wear<'_>> = wears
-        .map(|(Dressed { name, species }, (groom, looks))| Wear {
+        .map(|(Dressed { name, species }, (groom, looks, levels))| Wear {
             name,
             species,
             groom,
+            levels,
             looks,
         })
         .collect();
@@ -252,7 +251,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         groom,
         skin: &skin,
         species,
-        levels: &levels,
+        levels,
         looks,
         coats: if args.coats.is_empty() { &[] } else { &wears },
         seed: args.seed,

@@ -1,9 +1,10 @@
 //! `vair figure`: several pictures on one sheet, from a recipe of `vair` commands.
 
+use super::gallery::check_sheet;
 use super::{Cli, Command, Console, Failure};
 use crate::blame::Blame;
 use crate::image::{Canvas, GLYPH_HEIGHT};
-use crate::io::{FileError, check_writable, read_bounded};
+use crate::io::{FileError, read_bounded};
 use clap::Parser as _;
 use glam::{Vec2, Vec3};
 use serde::Deserialize;
@@ -114,12 +115,10 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         return super::stdout::print(&text);
     };
     let recipe = read(&args.name, &text)?;
-    check_writable(output)?;
-    let scratch = tempfile::tempdir().map_err(|e| FileError::new("create", Path::new("."), e))?;
+    check_sheet(output)?;
+    let scratch = tempfile::tempdir()
+        .map_err(|e| FileError::new("create a folder in", &std::env::temp_dir(), e))?;
     let folder = args.panels.as_deref().unwrap_or(scratch.path());
-    if let Some(folder) = &args.panels {
-        std::fs::create_dir_all(folder).map_err(|e| FileError::new("create", folder, e))?;
-    }
     // All that can be refused is refused before any work.
     let quality = match args.quality {
         QualityArg::Draft => &recipe.draft,
@@ -129,6 +128,9 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         .map(|i| recipe.commands(i, quality, folder, args.panels.is_some()))
         .collect::<Result<_, String>>()
         .map_err(|e| Failure::new(Blame::Input, format!("{}: {e}", args.name)))?;
+    if let Some(folder) = &args.panels {
+        std::fs::create_dir_all(folder).map_err(|e| FileError::new("create", folder, e))?;
+    }
     let mut pictures = Vec::with_capacity(panels.len());
     for (i, (panel, commands)) in recipe.panels.iter().zip(panels).enumerate() {
         console.say(format!(
@@ -138,7 +140,14 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
             panel.label
         ));
         for command in commands {
-            super::dispatch(command, console)?;
+            super::dispatch(command, console).map_err(|failure| match failure.blame {
+                // What a panel had so far goes with the scratch folder.
+                Blame::Interrupted if args.panels.is_none() => {
+                    let help = "--panels FOLDER keeps the panels that are done";
+                    Failure::with_help(Blame::Interrupted, "stopped; no sheet was written", help)
+                }
+                _ => failure,
+            })?;
         }
         pictures.push(Canvas::read_png(&panel_path(folder, i, "png"))?);
     }
@@ -218,6 +227,15 @@ impl Recipe {
                     ));
                 }
             };
+            let what = line.split_whitespace().nth(1).unwrap_or("");
+            let draws = match verb {
+                "bake" => false,
+                "table" => matches!(what, "plot" | "compare"),
+                _ => true,
+            };
+            if i + 1 == panel.commands.len() && !draws {
+                return Err(of("the last command of a panel has to draw it".into()));
+            }
             let folder_text = folder.to_string_lossy();
             let words = line.split_whitespace().chain(more.split_whitespace());
             let mut words: Vec<String> = std::iter::once("vair".to_owned())
@@ -306,6 +324,8 @@ mod tests {
             ("export mink", "only render, bake"),
             ("render ember-lynx --zoom far", "invalid value 'far'"),
             ("figure furs", "only render, bake"),
+            ("bake ember-lynx", "has to draw it"),
+            ("table info FOLDER/a.exr", "has to draw it"),
         ] {
             let text = with(("render ember-lynx", command));
             let recipe = read("my.toml", &text).unwrap();
@@ -314,6 +334,15 @@ mod tests {
             assert!(error.starts_with("panel 1 (ember lynx): `"), "{error}");
             assert!(error.contains(complaint), "{error}");
         }
+    }
+
+    #[test]
+    fn sheets_are_png() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(check_sheet(&folder.path().join("sheet.PNG")).is_ok());
+        let error = check_sheet(&folder.path().join("sheet.jpg")).unwrap_err();
+        let report = format!("{:?}", error.report);
+        assert!(report.contains("must end in .png"), "{report}");
     }
 
     #[test]

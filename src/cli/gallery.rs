@@ -127,14 +127,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         ));
     }
     for path in &args.output {
-        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-        if !extension.eq_ignore_ascii_case("png") {
-            return refuse(format!(
-                "{}: a sheet's name must end in .png",
-                path.display()
-            ));
-        }
-        check_writable(path)?;
+        check_sheet(path)?;
     }
     let cache = if args.no_cache {
         None
@@ -336,4 +329,14 @@ fn others(folder: &Path, than: &[&Species]) -> Result<Vec<Species>, Failure> {
         |id: &&str| than.iter().all(|s| s.id != *id) && folder.join(format!("{id}.md")).exists();
     let load = |id: &str| Ok(species::load(id, &[])?);
     species::ids().filter(has_page).map(load).collect()
+}
+
+/// That a sheet can be written to a place, as what its name says.
+pub(super) fn check_sheet(path: &Path) -> Result<(), Failure> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+    if !extension.eq_ignore_ascii_case("png") {
+        let message = format!("{}: a sheet's name must end in .png", path.display());
+        return Err(Failure::new(Blame::Input, message));
+    }
+    Ok(check_writable(path)?)
 }

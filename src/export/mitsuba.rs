@@ -58,8 +58,7 @@ impl MitsubaScene<'_> {
     fn write_hair(&self, out: &mut dyn Write) -> io::Result<()> {
         let groom = self.groom;
         for strand in 0..groom.strands() {
-            let range = groom.offsets[strand] as usize..groom.offsets[strand + 1] as usize;
-            let points: Vec<Vec4> = range
+            let points: Vec<Vec4> = (groom.range(strand))
                 .map(|i| groom.points[i].extend(0.5 * groom.widths[i]) * UNITS)
                 .collect();
             for p in interpolating_b_spline(&points) {

@@ -12,6 +12,7 @@ pub mod usd;
 pub mod usdz;
 pub mod vdb;
 pub mod volume;
+mod zip;
 
 pub use error::ExportError;
 

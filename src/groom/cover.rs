@@ -132,21 +132,19 @@ fn picture(
     let starts: Vec<usize> = (0..groom.classes.len())
         .map(|class| groom.class.partition_point(|&c| usize::from(c) < class))
         .collect();
-    let strands: Vec<usize> = (0..groom.strands()).collect();
-    let seen = strands
-        .par_chunks(4096)
+    let seen = (0..groom.strands())
+        .into_par_iter()
+        .with_min_len(4096)
         .fold(
             || points.clone(),
-            |mut points, strands| {
-                for &strand in strands {
-                    let class = usize::from(groom.class[strand]);
-                    let place = strand - starts[class];
-                    let reach: Vec<(usize, f32)> = (0..parts.len())
-                        .filter(|&part| place < parts[part][class])
-                        .map(|part| (part, missing[part][class]))
-                        .collect();
-                    cover(groom, strand, &reach, &grid, &mut points);
-                }
+            |mut points, strand| {
+                let class = usize::from(groom.class[strand]);
+                let place = strand - starts[class];
+                let reach: Vec<(usize, f32)> = (0..parts.len())
+                    .filter(|&part| place < parts[part][class])
+                    .map(|part| (part, missing[part][class]))
+                    .collect();
+                cover(groom, strand, &reach, &grid, &mut points);
                 points
             },
         )
@@ -192,11 +190,8 @@ fn cover(groom: &Groom, strand: usize, parts: &[(usize, f32)], grid: &Grid, poin
     let widest = parts
         .iter()
         .fold(1.0f32, |most, part| most.max(MOST * part.1));
-    let (from, to) = (
-        groom.offsets[strand] as usize,
-        groom.offsets[strand + 1] as usize,
-    );
-    for k in from..to - 1 {
+    let joints = groom.range(strand);
+    for k in joints.start..joints.end - 1 {
         let (a, near_a) = grid.project(groom.points[k]);
         let (b, near_b) = grid.project(groom.points[k + 1]);
         let (half_a, half_b) = (0.5 * groom.widths[k], 0.5 * groom.widths[k + 1]);

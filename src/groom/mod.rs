@@ -225,6 +225,8 @@ pub fn grow(
                 let root = root_of(follicle);
                 if root.length * root.vary.length <= shortest {
                     Fate::Short
+                } else if root.vary.width <= 0.0 {
+                    Fate::Thin
                 } else if !variation.grows(id_of(class, rank), root.vary.density) {
                     Fate::Sparse
                 } else {
@@ -313,6 +315,8 @@ enum Fate {
     Grown,
     /// None: it would be shorter than it is thick.
     Short,
+    /// None: it would have no width.
+    Thin,
     /// None: fewer hairs grow here.
     Sparse,
 }
@@ -320,20 +324,24 @@ enum Fate {
 /// What is to be said of follicles that have no hair.
 fn missing(class: &str, fates: &[Fate]) -> Option<String> {
     let count = |fate| fates.iter().filter(|f| **f == fate).count();
-    let (short, sparse) = (count(Fate::Short), count(Fate::Sparse));
-    let mut reasons = Vec::new();
-    if short > 0 {
-        reasons.push(format!("{short} would be shorter than thick"));
-    }
-    if sparse > 0 {
-        reasons.push(format!("{sparse} are where its density is less"));
-    }
+    let reasons: Vec<(usize, &str)> = [
+        (count(Fate::Short), "would be shorter than thick"),
+        (count(Fate::Thin), "would have no width"),
+        (count(Fate::Sparse), "are where its density is less"),
+    ]
+    .into_iter()
+    .filter(|(count, _)| *count > 0)
+    .collect();
+    let lost: usize = reasons.iter().map(|(count, _)| count).sum();
+    let said: Vec<String> = (reasons.iter())
+        .map(|(count, why)| format!("{count} {why}"))
+        .collect();
     let all = fates.len();
     (!reasons.is_empty()).then(|| {
         format!(
             "{} of {all} strands of `{class}` did not grow: {}",
-            short + sparse,
-            reasons.join(", ")
+            lost,
+            said.join(", ")
         )
     })
 }

@@ -124,6 +124,12 @@ fn hairs_that_do_not_grow_are_counted_and_the_others_stay() {
     let said = groom.warnings.join("\n");
     assert!(said.contains("would be shorter than thick"), "{said}");
     assert!(groom.length.iter().all(|&length| length > 20e-6));
+
+    let (_, groom) = pair(halves(VaryWhat::Width, 0.0, 1.0));
+    let said = groom.warnings.join("\n");
+    assert!(said.contains("would have no width"), "{said}");
+    let roots = (0..groom.strands()).map(|i| groom.widths[groom.range(i).start]);
+    assert!(roots.min_by(f32::total_cmp) > Some(0.0));
 }
 
 #[test]

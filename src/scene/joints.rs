@@ -54,9 +54,8 @@ fn cut(groom: &Groom, strands: std::ops::Range<usize>) -> Joints {
     let mut out = Joints::default();
     let (mut control, mut joints) = (Vec::new(), Vec::new());
     for strand in strands {
-        let range = groom.offsets[strand] as usize..groom.offsets[strand + 1] as usize;
         control.clear();
-        control.extend(range.map(|p| {
+        control.extend(groom.range(strand).map(|p| {
             (groom.points[p] * UNITS_PER_METER).extend(0.5 * groom.widths[p] * UNITS_PER_METER)
         }));
         joints.clear();

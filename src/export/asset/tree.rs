@@ -169,7 +169,9 @@ impl<'p, 'a> Builder<'p, 'a> {
                 .push(("lod".to_owned(), self.parts.levels[0].name.to_owned()));
             root.variant_sets.push(VariantSet {
                 name: "lod".to_owned(),
-                variants: self.parts.levels.iter().map(|l| self.variant(l)).collect(),
+                variants: (0..self.parts.levels.len())
+                    .map(|l| self.variant(l))
+                    .collect(),
             });
         }
         if let Some(worn) = self.parts.coats.first() {
@@ -306,10 +308,11 @@ impl<'p, 'a> Builder<'p, 'a> {
     }
 
     /// What a level of detail adds to the curves that are there.
-    fn variant(&self, level: &Level) -> Prim<'a> {
+    fn variant(&self, index: usize) -> Prim<'a> {
+        let level = &self.parts.levels[index];
         let mut variant = self.strands_of(level, level.name);
         if !self.parts.coats.is_empty() {
-            let set = self.wardrobe(|coat| coat.strands_of(level, ""));
+            let set = self.wardrobe(|coat| coat.strands_of(&coat.parts.levels[index], ""));
             variant.variant_sets.push(set);
         }
         variant

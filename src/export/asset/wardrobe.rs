@@ -4,6 +4,7 @@
 //! within each level for its strands. Both sets of variants have the name `coat`, so that one selection
 //! makes both choices.
 
+use super::levels::Level;
 use super::look::ClassLook;
 use super::provenance::identifier;
 use super::tree::{Builder, Content};
@@ -21,6 +22,8 @@ pub struct Wear<'a> {
     pub species: &'a Species,
     /// Its fur: of the same follicles for all coats.
     pub groom: &'a Groom,
+    /// Its levels of detail, of the same strands for all coats: how much wider they are is each one's own.
+    pub levels: &'a [Level],
     /// Materials of the hair classes, in their order; empty for none.
     pub looks: &'a [ClassLook],
 }
@@ -31,6 +34,7 @@ impl<'a> Parts<'a> {
         Self {
             groom: coat.groom,
             species: coat.species,
+            levels: coat.levels,
             looks: coat.looks,
             coats: &[],
             ..*self

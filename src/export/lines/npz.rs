@@ -1,19 +1,14 @@
 //! Arrays for numpy: a zip archive, without compression, of .npy files.
 
 use super::{Lines, WriteError, put_floats};
-use flate2::Crc;
+use crate::export::zip::Archive;
 use std::io::Write;
 
 /// An archive beyond this would need the 64-bit form of zip.
 const LARGEST: u64 = u32::MAX as u64;
 
-/// One array: its name, header and bytes.
-struct Entry {
-    name: &'static str,
-    bytes: Vec<u8>,
-}
-
-fn entry(name: &'static str, kind: &str, shape: &str, data: impl FnOnce(&mut Vec<u8>)) -> Entry {
+/// An array's header and numbers, as a file.
+fn array(kind: &str, shape: &str, data: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     let mut text = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
     // The data begin at a multiple of 64 bytes.
     while (10 + text.len() + 1) % 64 != 0 {
@@ -24,7 +19,7 @@ fn entry(name: &'static str, kind: &str, shape: &str, data: impl FnOnce(&mut Vec
     bytes.extend((text.len() as u16).to_le_bytes());
     bytes.extend(text.as_bytes());
     data(&mut bytes);
-    Entry { name, bytes }
+    bytes
 }
 
 pub(super) fn write(out: &mut impl Write, lines: &Lines<'_>) -> Result<(), WriteError> {
@@ -39,85 +34,19 @@ pub(super) fn write(out: &mut impl Write, lines: &Lines<'_>) -> Result<(), Write
         let _ = put_floats(bytes, values);
     };
     let rows = format!("({count}, 3)");
-    let mut archive = Archive::default();
+    let mut archive = Archive::new(out, 1);
     let points = &mut lines.points.iter().flat_map(|p| p.to_array());
-    archive.add(
-        out,
-        entry("points.npy", "<f4", &rows, |b| floats(points, b)),
-    )?;
+    archive.add("points.npy", &array("<f4", &rows, |b| floats(points, b)))?;
     let widths = &mut lines.widths.iter().copied();
-    archive.add(
-        out,
-        entry("widths.npy", "<f4", &format!("({count},)"), |b| {
-            floats(widths, b)
-        }),
-    )?;
+    let shape = format!("({count},)");
+    archive.add("widths.npy", &array("<f4", &shape, |b| floats(widths, b)))?;
     let shape = format!("({},)", lines.offsets.len());
     let offsets = lines.offsets.iter().flat_map(|o| o.to_le_bytes());
-    archive.add(
-        out,
-        entry("offsets.npy", "<u4", &shape, |b| b.extend(offsets)),
-    )?;
+    archive.add("offsets.npy", &array("<u4", &shape, |b| b.extend(offsets)))?;
     if !lines.colors.is_empty() {
         let colors = &mut lines.colors.iter().flat_map(|c| c.to_array());
-        archive.add(
-            out,
-            entry("colors.npy", "<f4", &rows, |b| floats(colors, b)),
-        )?;
+        archive.add("colors.npy", &array("<f4", &rows, |b| floats(colors, b)))?;
     }
-    archive.finish(out)?;
+    archive.finish()?;
     Ok(())
-}
-
-/// The directory that follows the files.
-#[derive(Default)]
-struct Archive {
-    directory: Vec<u8>,
-    files: u16,
-    position: u32,
-}
-
-impl Archive {
-    fn add(&mut self, out: &mut impl Write, entry: Entry) -> std::io::Result<()> {
-        let mut crc = Crc::new();
-        crc.update(&entry.bytes);
-        let size = entry.bytes.len() as u32;
-        // Version, flags, method; 1 January 1980, so that equal strands are equal files.
-        let mut common = Vec::new();
-        for short in [20u16, 0, 0, 0, 0x21] {
-            common.extend(short.to_le_bytes());
-        }
-        for word in [crc.sum(), size, size] {
-            common.extend(word.to_le_bytes());
-        }
-        common.extend((entry.name.len() as u16).to_le_bytes());
-        common.extend(0u16.to_le_bytes());
-        let name = entry.name.as_bytes();
-        let local = [b"PK\x03\x04", &common[..], name].concat();
-        out.write_all(&local)?;
-        out.write_all(&entry.bytes)?;
-
-        self.directory.extend(b"PK\x01\x02");
-        self.directory.extend(20u16.to_le_bytes());
-        self.directory.extend(&common);
-        // Comment, disk, attributes.
-        self.directory.extend([0; 10]);
-        self.directory.extend(self.position.to_le_bytes());
-        self.directory.extend(name);
-        self.files += 1;
-        self.position += local.len() as u32 + size;
-        Ok(())
-    }
-
-    fn finish(self, out: &mut impl Write) -> std::io::Result<()> {
-        out.write_all(&self.directory)?;
-        let mut end = b"PK\x05\x06".to_vec();
-        for short in [0, 0, self.files, self.files] {
-            end.extend(short.to_le_bytes());
-        }
-        end.extend((self.directory.len() as u32).to_le_bytes());
-        end.extend(self.position.to_le_bytes());
-        end.extend(0u16.to_le_bytes());
-        out.write_all(&end)
-    }
 }

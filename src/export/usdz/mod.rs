@@ -1,11 +1,11 @@
 //! A coat for viewers on phones: a .usdz holds one mesh in place of the strands, which such viewers refuse.
 
 mod shell;
-mod zip;
 
 use super::asset::{Frame, Parts, Up, identifier};
 use super::error::ExportError;
 use super::usd::{self, Array, Attribute, Form, Layer, Prim, Rows, Value};
+use super::zip::Archive;
 use crate::PROGRAM;
 use crate::color::srgb_from_linear;
 use crate::io::{AtomicFile, FileError};
@@ -16,6 +16,8 @@ use std::path::Path;
 
 /// Name of the picture of colors in the archive.
 const PICTURE: &str = "coat.png";
+/// Members begin at multiples of so many bytes, so that readers can map them into memory.
+const ALIGNMENT: usize = 64;
 /// Roughness of the preview surface: fur has no sharp highlight as a whole.
 const ROUGHNESS: f32 = 0.9;
 
@@ -38,10 +40,13 @@ pub fn write(path: &Path, parts: &Parts<'_>, frame: Frame) -> Result<usize, Expo
     let mut layer = Cursor::new(Vec::new());
     let scene = scene(parts, &shell, &picture, frame);
     usd::write(&scene, Form::Binary, &mut layer, &mut |_| Ok(())).map_err(failed)?;
-    // The first member is what the archive opens as.
-    let files = [("coat.usdc", layer.into_inner()), (PICTURE, picture.png)];
     let mut file = AtomicFile::create(path)?;
-    zip::write(&mut file, &files).map_err(failed)?;
+    let mut archive = Archive::new(&mut file, ALIGNMENT);
+    // The first member is what the archive opens as.
+    (archive.add("coat.usdc", layer.get_ref()))
+        .and_then(|()| archive.add(PICTURE, &picture.png))
+        .and_then(|()| archive.finish())
+        .map_err(failed)?;
     file.commit()?;
     Ok(shell.triangles.len())
 }

@@ -109,7 +109,7 @@ fn sums(groom: &Groom, skin: &Skin, species: &Species, place: &[u32], count: usi
     let colors = asset::colors(groom, species);
     let mut sums = vec![Sums::default(); count];
     for strand in 0..groom.strands() {
-        let range = groom.offsets[strand] as usize..groom.offsets[strand + 1] as usize;
+        let range = groom.range(strand);
         let (points, widths) = (&groom.points[range.clone()], &groom.widths[range.clone()]);
         let corners = skin.triangles[groom.root_triangle[strand] as usize];
         let [u, v] = groom.root_barycentric[strand].to_array();

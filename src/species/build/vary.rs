@@ -6,6 +6,10 @@ use crate::species::fields::VARIED;
 use crate::species::model::{Vary, VaryBy, VaryWhat};
 use crate::species::recipe::{need, picture, word};
 
+/// Where the picture is black or the noise lowest, and where it is white or highest, if nothing is said.
+const FROM: f64 = 0.0;
+const TO: f64 = 1.0;
+
 impl Reader<'_> {
     /// The list behind `vary`; what is refused is left out.
     pub(super) fn vary(&mut self, groom: &Checked) -> Vec<Vary> {
@@ -32,8 +36,8 @@ impl Reader<'_> {
             VaryWhat::Density => (0.0, 1.0),
             _ => (0.0, 10.0),
         };
-        for key in ["from", "to"] {
-            let value = number(table, key).unwrap_or(0.0);
+        for (key, default) in [("from", FROM), ("to", TO)] {
+            let value = number(table, key).unwrap_or(default);
             if !(low..=high).contains(&value) {
                 let path = table.path_of(key);
                 let message = format!("`{path}` is {value}, expected {low} to {high}");
@@ -44,8 +48,8 @@ impl Reader<'_> {
         Some(Vary {
             what,
             by,
-            from: number(table, "from").unwrap_or(0.0),
-            to: number(table, "to").unwrap_or(1.0),
+            from: number(table, "from").unwrap_or(FROM),
+            to: number(table, "to").unwrap_or(TO),
         })
     }
 }

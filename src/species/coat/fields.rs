@@ -1,6 +1,6 @@
 //! The fields of a coat recipe.
 
-use crate::species::fields::{BAND, CHANNELS, SPACES, choice, number};
+use crate::species::fields::{BAND, MAP_CHANNEL, MAP_FILE, SPACES, choice, number};
 use crate::species::shape::{Choice, Field, Kind, Shape};
 
 /// The whole file.
@@ -132,16 +132,8 @@ static LAYER: Shape = Shape {
             Kind::Setting(number(0.0, 1.0, "")),
             "Patches: how ragged their borders are; 0.4 when left out.",
         ),
-        Field::layered(
-            "file",
-            Kind::Text(1000),
-            "Map: a picture over the texture coordinates of the skin, .png or .exr, beside this file.",
-        ),
-        Field::optional(
-            "channel",
-            Kind::Choice(CHANNELS),
-            "Map: what of the picture counts; luminance when left out.",
-        ),
+        MAP_FILE,
+        MAP_CHANNEL,
         Field::optional(
             "space",
             Kind::Choice(SPACES),

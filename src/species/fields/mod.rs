@@ -10,7 +10,7 @@ mod vary;
 
 pub(crate) use cuticle::PATTERNS;
 pub(crate) use medulla::MEDULLAE;
-pub(crate) use vary::{CHANNELS, SPACES, VARIED, choice};
+pub(crate) use vary::{CHANNELS, MAP_CHANNEL, MAP_FILE, SPACES, VARIED, choice};
 
 use super::coat::COATS;
 use super::shape::{Field, Kind, Range, Shape};

@@ -21,16 +21,8 @@ pub(super) static VARY: Shape = Shape {
             Kind::Setting(number(-360.0, 360.0, "")),
             "The factor or angle where the picture is white or the noise highest; 1 when left out.",
         ),
-        Field::layered(
-            "file",
-            Kind::Text(1000),
-            "Map: a picture over the texture coordinates of the skin, .png or .exr, beside this file.",
-        ),
-        Field::optional(
-            "channel",
-            Kind::Choice(CHANNELS),
-            "Map: what of the picture counts; luminance when left out.",
-        ),
+        MAP_FILE,
+        MAP_CHANNEL,
         Field::optional(
             "space",
             Kind::Choice(SPACES),
@@ -87,6 +79,20 @@ const BY: &[Choice] = &[
         keys: &["size_mm", "rough", "seed"],
     },
 ];
+
+/// The picture of a map.
+pub(crate) const MAP_FILE: Field = Field::layered(
+    "file",
+    Kind::Text(1000),
+    "Map: a picture over the texture coordinates of the skin, .png or .exr, beside this file.",
+);
+
+/// What of it counts.
+pub(crate) const MAP_CHANNEL: Field = Field::optional(
+    "channel",
+    Kind::Choice(CHANNELS),
+    "Map: what of the picture counts; luminance when left out.",
+);
 
 /// In the order of [`crate::io::Channel::ALL`].
 pub(crate) const CHANNELS: &[Choice] = &[
