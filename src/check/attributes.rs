@@ -177,9 +177,13 @@ fn check_primvar(
         .prim
         .value(&format!("{}:indices", place.attribute));
     let elements = indices.or(property.any_value()).and_then(Value::elements);
-    let (Some(elements), Some(wanted)) = (elements, curves.expected(interpolation)) else {
+    let (Some(elements), Some(places)) = (elements, curves.expected(interpolation)) else {
         return;
     };
+    // Several values may belong together; indices name all of them at once.
+    let together = property.field("elementSize").and_then(Value::number);
+    let together = together.filter(|_| indices.is_none()).unwrap_or(1.0);
+    let wanted = places.saturating_mul(together.max(1.0) as usize);
     if elements != wanted {
         let message =
             format!("{name} is {interpolation} and has {elements} values, {wanted} are wanted");

@@ -1,5 +1,6 @@
 //! Rules on where strands and grids lie.
 
+use super::beside::Grids;
 use super::consumer::Consumer;
 use super::curves::Curves;
 use super::finding::{Findings, Place, Severity};
@@ -50,7 +51,7 @@ pub(super) fn regions(
     file: &str,
     items: &[Item<'_>],
     frame: (f64, bool),
-    open: &dyn Fn(&str) -> Option<VdbFacts>,
+    grids: &Grids,
 ) -> Vec<Region> {
     let mut regions = Vec::new();
     let mut push = |prim: &str, is_volume, (lo, hi): (DVec3, DVec3)| {
@@ -81,7 +82,7 @@ pub(super) fn regions(
     {
         let name = asset.prim.value("fieldName").and_then(Value::text);
         if let (Some(Value::Asset(file)), Some(name)) = (asset.prim.value("filePath"), name)
-            && let Some(facts) = open(file)
+            && let Ok(facts) = grids.open(file)
             && let Some(grid) = facts.grids.iter().find(|g| g.name == name)
             && let Some(bounds) = fog(grid)
         {
@@ -152,10 +153,10 @@ pub(super) fn check_extents(items: &[Item<'_>], regions: &[Region], findings: &m
     }
 }
 
-/// That strands and grids, of one file or of several, lie in the same place.
-pub(super) fn check_frames(regions: &[Region], findings: &mut Findings<'_>) {
-    for curves in regions.iter().filter(|r| !r.is_volume) {
-        for volume in regions.iter().filter(|r| r.is_volume) {
+/// That strands and grids that are seen together lie in the same place.
+pub(super) fn check_frames(strands: &[Region], grids: &[Region], findings: &mut Findings<'_>) {
+    for curves in strands.iter().filter(|r| !r.is_volume) {
+        for volume in grids.iter().filter(|r| r.is_volume) {
             // Where one does not say its unit, numbers are held against numbers.
             let boxes = curves.turned().zip(volume.turned());
             let (a, b) = boxes.unwrap_or(((curves.lo, curves.hi), (volume.lo, volume.hi)));
@@ -200,4 +201,14 @@ fn apart(a: (DVec3, DVec3), b: (DVec3, DVec3)) -> Option<(Severity, String)> {
         );
         (Warning, what)
     })
+}
+
+/// Adds what lies in a view to what was seen before it: strands if there were none, and grids if there were none.
+pub(super) fn add_unseen(seen: &mut Vec<Region>, view: Vec<Region>) {
+    for is_volume in [false, true] {
+        if !seen.iter().any(|region| region.is_volume == is_volume) {
+            let new = view.iter().filter(|r| r.is_volume == is_volume);
+            seen.extend(new.cloned());
+        }
+    }
 }

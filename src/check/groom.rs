@@ -192,6 +192,7 @@ pub(super) fn check_roots(items: &[Item<'_>], all: &[Curves<'_>], findings: &mut
         let [a, b, c] = [corner(face, 0)?, corner(face, 1)?, corner(face, 2)?];
         (counts[face] == 3).then(|| a + u * (b - a) + v * (c - a))
     };
+    let mut is_left_out = false;
     for curves in all {
         let prim = curves.item.prim;
         let faces = ints(prim.value("primvars:skinprim"));
@@ -224,7 +225,11 @@ pub(super) fn check_roots(items: &[Item<'_>], all: &[Curves<'_>], findings: &mut
             _ => continue,
         };
         let uvs = floats(uvs, width).unwrap_or_default();
-        if curves.item.is_moved || mesh.is_moved || width < 2 || uvs.len() != width * faces.len() {
+        if width < 2 || uvs.len() != width * faces.len() {
+            continue;
+        }
+        if curves.item.is_moved || mesh.is_moved {
+            is_left_out = true;
             continue;
         }
         let (mut start, mut off, mut worst) = (0usize, 0, 0.0f32);
@@ -267,7 +272,7 @@ pub(super) fn check_roots(items: &[Item<'_>], all: &[Curves<'_>], findings: &mut
             );
         }
     }
-    if all.iter().any(|c| c.item.is_moved) || mesh.is_moved {
+    if is_left_out {
         let message =
             "strands or skin are moved by transforms: roots were not held against the skin";
         let place = Place {

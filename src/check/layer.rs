@@ -4,7 +4,7 @@ use super::consumer::Consumer;
 use super::finding::{Findings, Place, Severity};
 use super::rule::Rule;
 use super::stage::Item;
-use crate::usd_file::{Fields, Layer, Prim, Value};
+use crate::usd_file::{Fields, Layer, Prim, Value, is_resolved_elsewhere};
 use Consumer::{Blender, Houdini, Omniverse, Unreal, Validators};
 use Severity::{Error, Note, Warning};
 
@@ -88,14 +88,13 @@ pub(super) fn check(layer: &Layer, items: &[Item<'_>], findings: &mut Findings<'
         paths_of_prim(&format!("/{}", prim.name), prim, &mut paths);
     }
     for (prim, attribute, path) in paths {
-        let is_absolute = path.starts_with('/') || path.contains(":\\") || path.contains("://");
-        let (severity, message) = match (
-            is_absolute,
-            path.starts_with("./") || path.starts_with("../"),
-        ) {
-            (false, true) => continue,
-            (true, _) => (Warning, format!("{path} is found on this machine only")),
-            (false, false) => (
+        // What a resolver makes of URIs and expressions is its own business.
+        if is_resolved_elsewhere(&path) || path.starts_with("./") || path.starts_with("../") {
+            continue;
+        }
+        let (severity, message) = match path.starts_with('/') || path.contains(":\\") {
+            true => (Warning, format!("{path} is found on this machine only")),
+            false => (
                 Note,
                 format!("{path} is looked for in more places than beside the file"),
             ),

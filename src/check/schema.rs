@@ -15,7 +15,7 @@ pub fn json_schema() -> Value {
         "title": "Findings of vair check",
         "type": "object",
         "additionalProperties": false,
-        "required": ["files", "errors", "warnings", "notes", "findings"],
+        "required": ["files", "errors", "warnings", "notes", "findings", "refused"],
         "properties": {
             "files": { "type": "array", "items": text("a path as it was given") },
             "errors": count,
@@ -36,6 +36,18 @@ pub fn json_schema() -> Value {
                         "attribute": text("attribute or field; empty for the prim itself"),
                         "message": text("what is wrong"),
                         "remedy": text("what to do"),
+                    },
+                },
+            },
+            "refused": {
+                "type": "array",
+                "items": {
+                    "type": "object",
+                    "additionalProperties": false,
+                    "required": ["file", "message"],
+                    "properties": {
+                        "file": text("one of `files` that could not be looked at"),
+                        "message": text("why"),
                     },
                 },
             },

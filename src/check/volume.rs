@@ -1,5 +1,6 @@
 //! Rules on grids: files of OpenVDB, the fields that show them, and where they lie.
 
+use super::beside::{Grids, unfollowed};
 use super::consumer::Consumer;
 use super::finding::{Findings, Place, Severity};
 use super::rule::Rule;
@@ -34,17 +35,32 @@ pub(super) fn check_file(facts: &VdbFacts, findings: &mut Findings<'_>) {
             format!("the file has version {version}: OpenVDB 13 does not read it"),
             "write it again with a newer library",
         ),
-        225.. => add(
+        225 => add(
             Warning,
             DRAWING,
-            format!("the file has version {version}, which few read yet"),
+            "the file has version 225: libraries before OpenVDB 12 may refuse it".to_owned(),
+            "write version 224",
+        ),
+        226.. => add(
+            Error,
+            DRAWING,
+            format!("the file has version {version}; the newest that is known is 225"),
             "write version 224",
         ),
         _ => {}
     }
     if !facts.is_read {
-        let message = format!("grids of a file of version {version} were not looked at");
-        add(Note, DRAWING, message, "write version 224");
+        let (message, remedy) = match version {
+            222..=225 => (
+                "grids were not looked at: the file was written as a stream and does not say where they are".to_owned(),
+                "nothing, if readers know it; OpenVDB's io::File writes the places",
+            ),
+            _ => (
+                format!("grids were not looked at: files of version {version} are not read here"),
+                "write version 224",
+            ),
+        };
+        add(Note, DRAWING, message, remedy);
     }
     for grid in &facts.grids {
         check_grid(grid, findings);
@@ -154,12 +170,8 @@ fn check_grid(grid: &GridFacts, findings: &mut Findings<'_>) {
 
 /// All rules on the volumes of a stage.
 ///
-/// * `open`: the facts of an OpenVDB file, as a field names it.
-pub(super) fn check_fields(
-    items: &[Item<'_>],
-    open: &dyn Fn(&str) -> Option<VdbFacts>,
-    findings: &mut Findings<'_>,
-) {
+/// * `grids`: the OpenVDB files that fields name.
+pub(super) fn check_fields(items: &[Item<'_>], grids: &Grids, findings: &mut Findings<'_>) {
     let by_path: BTreeMap<&str, &Item<'_>> = items.iter().map(|i| (i.path.as_str(), i)).collect();
     for volume in items.iter().filter(|i| i.prim.type_name == "Volume") {
         let place = |attribute| Place {
@@ -179,7 +191,7 @@ pub(super) fn check_fields(
                         if let Some(Value::Asset(file)) = asset.prim.value("filePath") {
                             files.insert(file.clone());
                         }
-                        check_field(asset, open, findings);
+                        check_field(asset, grids, findings);
                     }
                     None => {
                         let message = format!("the field {target} is not there");
@@ -204,11 +216,7 @@ pub(super) fn check_fields(
     }
 }
 
-fn check_field(
-    asset: &Item<'_>,
-    open: &dyn Fn(&str) -> Option<VdbFacts>,
-    findings: &mut Findings<'_>,
-) {
+fn check_field(asset: &Item<'_>, grids: &Grids, findings: &mut Findings<'_>) {
     let mut add = |rule, severity, attribute, message: String, remedy: &str| {
         let place = Place {
             prim: &asset.path,
@@ -248,16 +256,13 @@ fn check_field(
         );
         return;
     };
-    let Some(facts) = open(file) else {
-        let message = format!("{file} could not be read");
-        add(
-            Rule::C13,
-            Error,
-            "filePath",
-            message,
-            "put the file where the layer says",
-        );
-        return;
+    let facts = match grids.open(file) {
+        Ok(facts) => facts,
+        Err(why) => {
+            let (severity, message, remedy) = unfollowed(file, &why);
+            add(Rule::C13, severity, "filePath", message, remedy);
+            return;
+        }
     };
     let Some(grid) = facts.grids.iter().find(|g| g.name == name) else {
         if facts.is_read {

@@ -1,10 +1,12 @@
 //! `vair check`: what programs will refuse, ignore or misread in files of fur.
 
 use super::bake::parse_count;
-use super::stdout::{print, print_json};
+use super::stdout::{harmless, print, print_json};
 use super::{Console, Failure};
 use crate::blame::Blame;
-use crate::check::{self, CheckSettings, Consumer, Finding, RULES, Rule, Severity};
+use crate::check::{
+    self, CheckError, CheckSettings, Checked, Consumer, Finding, RULES, Refused, Rule, Severity,
+};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -64,7 +66,7 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         profile: profile(&args.profile)?,
         strands: args.expect_strands,
     };
-    let findings = check::check(&args.files, &settings)?;
+    let Checked { findings, refused } = check::check(&args.files, &settings);
     let count = |severity| findings.iter().filter(|f| f.severity == severity).count();
     let [errors, warnings, notes] = [Severity::Error, Severity::Warning, Severity::Note].map(count);
     if args.json {
@@ -75,14 +77,16 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
             "warnings": warnings,
             "notes": notes,
             "findings": findings.iter().map(as_json).collect::<Vec<_>>(),
+            "refused": refused.iter().map(refused_as_json).collect::<Vec<_>>(),
         }))?;
     } else {
         print(&lines(&findings))?;
     }
-    let summary = format!(
-        "{} files: {errors} errors, {warnings} warnings, {notes} notes",
-        args.files.len()
-    );
+    let read = args.files.len() - refused.len();
+    let summary = format!("{read} files: {errors} errors, {warnings} warnings, {notes} notes");
+    if !refused.is_empty() {
+        return Err(not_read(&refused, read, summary));
+    }
     if errors > 0 || (args.strict && warnings > 0) {
         return Err(Failure::with_help(
             Blame::Input,
@@ -92,6 +96,24 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     }
     console.say(summary);
     Ok(())
+}
+
+/// Files that could not be looked at; what was found in the others is printed already.
+///
+/// * `read`: number of the others. * `summary`: of those.
+fn not_read(refused: &[Refused], read: usize, summary: String) -> Failure {
+    let errors = || refused.iter().map(|r| &r.error);
+    let is_of_input = errors().all(|error| error.blame() == Blame::Input);
+    let blame = match is_of_input {
+        true => Blame::Input,
+        false => Blame::Environment,
+    };
+    let message: Vec<String> = errors().map(CheckError::to_string).collect();
+    let message = message.join("\n");
+    match read {
+        0 => Failure::new(blame, message),
+        _ => Failure::with_help(blame, message, format!("what could be read, {summary}")),
+    }
 }
 
 fn explain(rule: &str) -> Result<(), Failure> {
@@ -173,15 +195,17 @@ fn line(finding: &Finding, more: usize) -> String {
     if !place.is_empty() {
         place.push_str(": ");
     }
-    format!(
-        "{}: {} {} {place}{}. Remedy: {}. [{}]\n",
+    let line = format!(
+        "{}: {} {} {place}{}. Remedy: {}. [{}]",
         finding.file,
         finding.rule.id(),
         finding.severity.name(),
         finding.message,
         finding.remedy,
         names(finding).join(", ")
-    )
+    );
+    // Names and paths are those of files that anyone may have made.
+    harmless(&line.replace('\n', "\\n")).into_owned() + "\n"
 }
 
 fn names(finding: &Finding) -> Vec<&'static str> {
@@ -199,4 +223,8 @@ fn as_json(finding: &Finding) -> Value {
         "message": finding.message,
         "remedy": finding.remedy,
     })
+}
+
+fn refused_as_json(refused: &Refused) -> Value {
+    json!({ "file": refused.file, "message": refused.error.to_string() })
 }

@@ -1,5 +1,6 @@
 //! The terminal: progress bars and Ctrl-C.
 
+use super::stdout::harmless;
 use crate::progress::{Cancel, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Mutex;
@@ -37,7 +38,8 @@ impl Console {
     /// A remark on stderr, unless quiet.
     pub fn say(&self, remark: impl std::fmt::Display) {
         if !self.quiet {
-            self.with_bar(|bar| bar.suspend(|| eprintln!("{remark}")));
+            let remark = remark.to_string();
+            self.with_bar(|bar| bar.suspend(|| eprintln!("{}", harmless(&remark))));
         }
     }
 

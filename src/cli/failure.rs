@@ -1,5 +1,6 @@
 //! What a command returns when it cannot do what was asked.
 
+use super::stdout::harmless;
 use crate::blame::Blame;
 use std::process::ExitCode;
 
@@ -17,7 +18,7 @@ impl Failure {
     pub fn new(blame: Blame, message: impl std::fmt::Display) -> Self {
         Self {
             blame,
-            report: miette::miette!("{message}"),
+            report: miette::miette!("{}", harmless(&message.to_string())),
         }
     }
 
@@ -29,7 +30,11 @@ impl Failure {
     ) -> Self {
         Self {
             blame,
-            report: miette::miette!(help = help.to_string(), "{message}"),
+            report: miette::miette!(
+                help = harmless(&help.to_string()).into_owned(),
+                "{}",
+                harmless(&message.to_string())
+            ),
         }
     }
 

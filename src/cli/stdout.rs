@@ -1,7 +1,8 @@
-//! What commands print for other programs.
+//! What commands print for other programs, and what of it a terminal may have.
 
 use super::Failure;
 use crate::blame::Blame;
+use std::borrow::Cow;
 use std::io::{ErrorKind, Write as _};
 
 /// Writes to stdout; a reader that has gone away (`| head`) is no failure.
@@ -16,6 +17,24 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
         )),
         _ => Ok(()),
     }
+}
+
+/// Text with control characters, and those that turn its direction, spelled out: names in files may hold what
+/// drives a terminal. Line breaks and tabs stay.
+pub(super) fn harmless(text: &str) -> Cow<'_, str> {
+    let is_harmful = |c: char| {
+        let is_control = c.is_control() && !matches!(c, '\n' | '\t');
+        is_control
+            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    if !text.contains(is_harmful) {
+        return Cow::Borrowed(text);
+    }
+    let spelled = |c: char| match is_harmful(c) {
+        true => c.escape_unicode().to_string(),
+        false => c.to_string(),
+    };
+    Cow::Owned(text.chars().map(spelled).collect())
 }
 
 /// Writes JSON, indented.

@@ -19,22 +19,50 @@ const PROPERTIES_OF_PRIM: usize = 64;
 /// Most files that refer to one another in a row.
 const LONGEST_CHAIN: usize = 16;
 
+/// Why a file that another one names is not followed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unfollowed {
+    /// It is not there, or no plain file.
+    Gone,
+    /// It cannot be read, or is broken: what is wrong.
+    Broken(String),
+    /// It is of a kind that is not looked into.
+    Foreign,
+}
+
+/// Reads a layer that another one names.
+pub type Open<'f> = dyn Fn(&Path) -> Result<Layer, Unfollowed> + 'f;
+
 /// The files of a stage: read once, kept for all its views.
 pub struct Files<'f> {
-    open: &'f dyn Fn(&Path) -> Option<Layer>,
+    open: &'f Open<'f>,
     layers: HashMap<PathBuf, Option<Arc<Layer>>>,
-    /// Files that are named and could not be read, as they are named.
-    pub missing: Vec<String>,
+    /// Files that are named and not followed, from where the program runs.
+    pub unfollowed: Vec<(String, Unfollowed)>,
+    /// Whether there are more prims, or more files in a row, than are looked at.
+    pub is_cut: bool,
 }
 
 impl<'f> Files<'f> {
-    /// * `open`: reads a file, or not.
-    pub fn new(open: &'f dyn Fn(&Path) -> Option<Layer>) -> Self {
+    /// * `open`: reads a file, or says why not.
+    pub fn new(open: &'f Open<'f>) -> Self {
         Self {
             open,
             layers: HashMap::new(),
-            missing: Vec::new(),
+            unfollowed: Vec::new(),
+            is_cut: false,
         }
+    }
+
+    /// The layer that a stage begins with; prims of it may refer to others of it.
+    fn root(&mut self, root: &Layer, path: &Path) -> Arc<Layer> {
+        let anchored = || {
+            let mut root = root.clone();
+            anchor_layer(&mut root, path);
+            Some(Arc::new(root))
+        };
+        let known = self.layers.entry(path.to_owned()).or_insert_with(anchored);
+        known.clone().unwrap_or_default()
     }
 
     fn layer(&mut self, path: &str) -> Option<Arc<Layer>> {
@@ -42,13 +70,16 @@ impl<'f> Files<'f> {
         if let Some(known) = self.layers.get(&key) {
             return known.clone();
         }
-        let layer = (self.open)(&key).map(|mut layer| {
-            anchor_layer(&mut layer, &key);
-            Arc::new(layer)
-        });
-        if layer.is_none() {
-            self.missing.push(path.to_owned());
-        }
+        let layer = match (self.open)(&key) {
+            Ok(mut layer) => {
+                anchor_layer(&mut layer, &key);
+                Some(Arc::new(layer))
+            }
+            Err(why) => {
+                self.unfollowed.push((path.to_owned(), why));
+                None
+            }
+        };
         self.layers.insert(key, layer.clone());
         layer
     }
@@ -64,8 +95,7 @@ pub fn compose(
     files: &mut Files<'_>,
     chosen: &[(String, String)],
 ) -> Vec<Prim> {
-    let mut root = root.clone();
-    anchor_layer(&mut root, path);
+    let root = files.root(root, path);
     let mut composer = Composer {
         files,
         chosen,
@@ -84,6 +114,14 @@ fn anchor_layer(layer: &mut Layer, path: &Path) {
 
 fn anchor_prim(prim: &mut Prim, path: &Path) {
     anchor_fields(&mut prim.metadata, path);
+    for property in &mut prim.properties {
+        let samples = property.samples.iter_mut().map(|(_, value)| value);
+        for value in property.value.iter_mut().chain(samples) {
+            if let Value::Asset(asset) = value {
+                *asset = anchored(asset, path);
+            }
+        }
+    }
     for child in &mut prim.children {
         anchor_prim(child, path);
     }
@@ -96,24 +134,37 @@ fn anchor_prim(prim: &mut Prim, path: &Path) {
     }
 }
 
-fn anchor_fields(fields: &mut Fields, path: &Path) {
+/// Whether a name is no path, but a URI or an expression (between backticks) that other programs resolve.
+pub fn is_resolved_elsewhere(asset: &str) -> bool {
+    asset.contains("://") || asset.starts_with('`')
+}
+
+/// The file that a layer names; none for none, and what is no path as it is.
+fn anchored(asset: &str, path: &Path) -> String {
+    if asset.is_empty() || is_resolved_elsewhere(asset) {
+        return asset.to_owned();
+    }
     let folder = path.parent().unwrap_or(Path::new(""));
+    let file = folder.join(asset.strip_prefix("./").unwrap_or(asset));
+    file.to_string_lossy().into_owned()
+}
+
+fn anchor_fields(fields: &mut Fields, path: &Path) {
     for (name, value) in fields {
         let sublayers = name == "subLayers";
         match value {
             Value::References(references) => {
                 for reference in references {
-                    let file = match reference.asset.as_str() {
-                        "" => path.to_owned(),
-                        asset => folder.join(asset.strip_prefix("./").unwrap_or(asset)),
+                    reference.asset = match reference.asset.as_str() {
+                        "" => path.to_string_lossy().into_owned(),
+                        asset => anchored(asset, path),
                     };
-                    reference.asset = file.to_string_lossy().into_owned();
                 }
             }
             // A crate file has the names of sublayers as plain strings.
             Value::Texts(names) if sublayers => {
                 let reference = |name: &String| Reference {
-                    asset: folder.join(name).to_string_lossy().into_owned(),
+                    asset: anchored(name, path),
                     prim: String::new(),
                 };
                 *value = Value::References(names.iter().map(reference).collect());
@@ -140,14 +191,11 @@ impl Composer<'_, '_> {
                 all.children.push(prim);
             }
         }
-        if let Some(Value::References(sublayers)) = layer.field("subLayers")
-            && chain < LONGEST_CHAIN
-        {
+        if let Some(Value::References(sublayers)) = layer.field("subLayers") {
             for sublayer in sublayers {
-                let Some(left) = self.room.checked_sub(1) else {
+                if self.take(1, 0, chain + 1).is_none() {
                     break;
-                };
-                self.room = left;
+                }
                 if let Some(layer) = self.files.layer(&sublayer.asset) {
                     let below = Prim {
                         children: self.layer(&layer, chain + 1),
@@ -160,9 +208,18 @@ impl Composer<'_, '_> {
         all.children
     }
 
+    /// Takes room for so many prims; `None` beyond the limits.
+    fn take(&mut self, size: usize, depth: usize, chain: usize) -> Option<()> {
+        let left = self.room.checked_sub(size);
+        let left = left.filter(|_| depth <= DEEPEST && chain <= LONGEST_CHAIN);
+        self.files.is_cut |= left.is_none();
+        self.room = left?;
+        Some(())
+    }
+
     /// A prim with all that is added to it; `None` beyond the limits.
     ///
-    /// * `path`: where it goes to. * `selections`: variants that stronger opinions choose.
+    /// * `path`: of the prim in the file that has it. * `selections`: variants that stronger opinions choose.
     fn prim(
         &mut self,
         spec: &Prim,
@@ -172,10 +229,7 @@ impl Composer<'_, '_> {
         chain: usize,
     ) -> Option<Prim> {
         let size = 1 + (spec.properties.len() + spec.metadata.len()) / PROPERTIES_OF_PRIM;
-        self.room = self.room.checked_sub(size)?;
-        if depth > DEEPEST || chain > LONGEST_CHAIN {
-            return None;
-        }
+        self.take(size, depth, chain)?;
         let mut prim = Prim {
             name: spec.name.clone(),
             specifier: spec.specifier,
@@ -248,7 +302,8 @@ impl Composer<'_, '_> {
         let first = names.next()?;
         let root = layer.prims.iter().find(|prim| prim.name == first)?;
         let spec = names.try_fold(root, |prim, name| prim.child(name))?;
-        let mut prim = self.prim(spec, path, selections, depth + 1, chain + 1)?;
+        // What it refers to itself moves to where it stands, and all of it from there.
+        let mut prim = self.prim(spec, &from, selections, depth + 1, chain + 1)?;
         if from != path {
             moved(&mut prim, &from, path);
         }

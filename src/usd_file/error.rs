@@ -8,6 +8,9 @@ pub enum UsdFileError {
     /// Neither text nor a crate file nor a package.
     #[error("it is no USD file: it does not begin with #usda, PXR-USDC or PK")]
     NotUsd,
+    /// A package that is no zip archive.
+    #[error("it is no package: a .usdz is a zip archive and begins with PK")]
+    NotPackage,
     /// A crate file older or newer than what is read.
     #[error("crate files of version {0} are not read, only 0.4.0 to 0.255")]
     Version(String),

@@ -118,10 +118,13 @@ impl Property {
         (*value != Value::Block).then_some(value)
     }
 
+    /// A value of the metadata.
+    pub fn field(&self, name: &str) -> Option<&Value> {
+        field(&self.metadata, name)
+    }
+
     /// A word of the metadata; empty if there is none.
     pub fn word(&self, name: &str) -> &str {
-        field(&self.metadata, name)
-            .and_then(Value::text)
-            .unwrap_or_default()
+        self.field(name).and_then(Value::text).unwrap_or_default()
     }
 }

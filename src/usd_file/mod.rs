@@ -21,7 +21,7 @@ mod zip;
 #[cfg(test)]
 mod tests;
 
-pub use compose::{Files, compose};
+pub use compose::{Files, Open, Unfollowed, compose, is_resolved_elsewhere};
 pub use error::UsdFileError;
 pub use layer::{Fields, Layer, Prim, Property, Specifier, VariantSet};
 pub use value::{Reference, Value};

@@ -231,10 +231,10 @@ fn files_beside_a_layer_and_variants_are_put_together() {
 def "a" (payload = @./b.usda@ variants = {string lod = "low"}) { int x = 1 }
 def "z" (payload = @./z.usda@) {}"#,
     );
-    let open = |path: &Path| {
-        (path == Path::new("folder/b.usda")).then(|| {
-            text(
-                r#"#usda 1.0
+    let open = |path: &Path| match path == Path::new("folder/b.usda") {
+        false => Err(Unfollowed::Gone),
+        true => Ok(text(
+            r#"#usda 1.0
 ( defaultPrim = "b" )
 def Xform "b" (variants = {string lod = "full"}) {
     int x = 2
@@ -242,8 +242,7 @@ def Xform "b" (variants = {string lod = "full"}) {
     def Scope "c" { int y = 3 }
     variantSet "lod" = { "full" { over "c" { int n = 9 } } "low" { over "c" { int n = 1 } } }
 }"#,
-            )
-        })
+        )),
     };
     let mut files = Files::new(&open);
     let number = |prims: &[Prim]| prims[0].child("c").unwrap().value("n").unwrap().number();
@@ -255,7 +254,49 @@ def Xform "b" (variants = {string lod = "full"}) {
     let full = [("lod".to_owned(), "full".to_owned())];
     let prims = compose(&root, Path::new("folder/a.usda"), &mut files, &full);
     assert_eq!(number(&prims), Some(9.0));
-    assert_eq!(files.missing, ["folder/z.usda"]);
+    assert_eq!(
+        files.unfollowed,
+        [("folder/z.usda".to_owned(), Unfollowed::Gone)]
+    );
+    assert!(!files.is_cut);
+}
+
+/// Targets move with what they are of, once for each reference, and files are found beside the layer that names them.
+#[test]
+fn targets_and_files_follow_two_references() {
+    let text = |text: &str| Ok(parse(text.as_bytes()).unwrap());
+    let open = |path: &Path| match path.to_str().unwrap() {
+        "a/b.usda" => text(
+            r#"#usda 1.0
+def "fox" { def "skin" ( references = @./c/c.usda@</fox> ) {} rel here = </fox/skin/mtl> }"#,
+        ),
+        "a/c/c.usda" => text(
+            r#"#usda 1.0
+def "fox" {
+    rel to = [</fox/mtl>, </other>]
+    def "mtl" {}
+    asset file = @./x.vdb@
+    asset far = @http://x/y@
+    asset none = @@
+}"#,
+        ),
+        _ => Err(Unfollowed::Gone),
+    };
+    let root = parse(b"#usda 1.0\ndef 'fox' { def 'fur' ( references = @./b.usda@</fox> ) {} }");
+    let mut files = Files::new(&open);
+    let prims = compose(&root.unwrap(), Path::new("a/a.usda"), &mut files, &[]);
+    let fur = prims[0].child("fur").unwrap();
+    let skin = fur.child("skin").unwrap();
+    assert_eq!(
+        skin.property("to").unwrap().targets,
+        ["/fox/fur/skin/mtl", "/other"]
+    );
+    assert_eq!(fur.property("here").unwrap().targets, ["/fox/fur/skin/mtl"]);
+    let asset = |name: &str| skin.value(name).cloned();
+    assert_eq!(asset("file"), Some(Value::Asset("a/c/x.vdb".into())));
+    assert_eq!(asset("far"), Some(Value::Asset("http://x/y".into())));
+    assert_eq!(asset("none"), Some(Value::Asset(String::new())));
+    assert_eq!(files.unfollowed, []);
 }
 
 /// A layer of ten of itself would be 10^16 layers.
@@ -264,10 +305,11 @@ fn layers_of_themselves_end() {
     let itself = ["@./a.usda@"; 10].join(", ");
     let text = format!("#usda 1.0\n( subLayers = [{itself}] )\ndef \"a\" {{}}\n");
     let layer = parse(text.as_bytes()).unwrap();
-    let open = |_: &Path| parse(text.as_bytes()).ok();
+    let open = |_: &Path| Ok(layer.clone());
     let mut files = Files::new(&open);
     let prims = compose(&layer, Path::new("a.usda"), &mut files, &[]);
     assert_eq!(prims.len(), 1);
+    assert!(files.is_cut);
 }
 
 /// No panic and no great allocation, whatever is changed; every prefix of a crate file is refused.
@@ -292,7 +334,7 @@ fn broken_files_are_refused() {
                 bytes[at] ^= 1 << (state & 7);
             }
             if let Ok(layer) = parse(&bytes) {
-                let mut files = Files::new(&|_| None);
+                let mut files = Files::new(&|_| Err(Unfollowed::Gone));
                 compose(&layer, Path::new("x"), &mut files, &[]);
             }
         }

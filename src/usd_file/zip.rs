@@ -18,8 +18,11 @@ pub struct Member {
 /// The members of a package in order, by the heads that stand before each.
 ///
 /// # Errors
-/// A head that is cut off.
+/// No zip archive, or a head that is cut off.
 pub fn members(bytes: &[u8]) -> Result<Vec<Member>, UsdFileError> {
+    if !bytes.starts_with(b"PK") {
+        return Err(UsdFileError::NotPackage);
+    }
     let mut members = Vec::new();
     let mut cursor = Cursor::new(bytes, 0);
     while bytes[cursor.at() as usize..].starts_with(b"PK\x03\x04") {

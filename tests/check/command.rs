@@ -90,6 +90,64 @@ fn findings_are_printed_as_text_and_as_the_schema_says() {
     assert_eq!(printed["errors"], 1);
 }
 
+/// A file that is broken does not hide what is in the others.
+#[test]
+fn broken_files_are_named_beside_the_findings_of_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let fault = FUR.replacen("kind = \"component\"", "", 1);
+    fs::write(folder.path().join("odd.usda"), fault).unwrap();
+    fs::write(folder.path().join("torn.usda"), "#usda 1.0\ndef {").unwrap();
+    let output = vair(
+        folder.path(),
+        &["gone.usda", "odd.usda", "torn.usda", "--json"],
+    );
+    assert_eq!(output.status.code(), Some(1));
+    let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(printed["warnings"], 1);
+    let refused = printed["refused"].as_array().unwrap();
+    let files: Vec<_> = refused
+        .iter()
+        .map(|r| r["file"].as_str().unwrap())
+        .collect();
+    assert_eq!(files, ["gone.usda", "torn.usda"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    for word in [
+        "gone.usda",
+        "torn.usda: line 2",
+        "1 files: 0 errors, 1 warnings",
+    ] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+}
+
+/// Names in files cannot drive a terminal or forge a line.
+#[test]
+fn control_characters_are_spelled_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let bad = "\u{1b}]0;x\u{7}\u{202e}\nfine.usda: all is well";
+    let fault = FUR.replacen(
+        "    kind = \"component\"\n",
+        &format!("    kind = \"component\"\n    payload = @./{bad}.usdc@\n"),
+        1,
+    );
+    fs::write(folder.path().join("fur.usda"), fault).unwrap();
+    let output = vair(folder.path(), &["fur.usda"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains(r"\u{1b}]0;x\u{7}\u{202e}\n"), "{said}");
+    assert!(
+        said.lines().all(|line| line.starts_with("fur.usda: ")),
+        "{said}"
+    );
+    let worse = "torn\u{1b}[31m.usda";
+    fs::write(folder.path().join(worse), "#usda 1.0\ndef {").unwrap();
+    let output = vair(folder.path(), &[worse]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains(r"torn\u{1b}[31m.usda") && !said.contains('\u{1b}'),
+        "{said}"
+    );
+}
+
 /// Every rule is on the page that describes them, with its number.
 #[test]
 fn the_page_has_all_rules() {

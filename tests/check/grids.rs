@@ -78,7 +78,7 @@ fn in_files(files: &[(&str, &[u8])], checked: &[&str], profile: &[Consumer]) -> 
         profile: profile.to_vec(),
         ..CheckSettings::default()
     };
-    let all = check(&paths, &settings).unwrap();
+    let all = check(&paths, &settings).findings;
     all.into_iter().filter(|f| f.severity > Note).collect()
 }
 
@@ -138,9 +138,11 @@ fn c13_grids() {
     let mut old = sound();
     old[8] = 219;
     only(&in_grids(&old), Rule::C13, Error);
-    let mut new = sound();
-    new[8] = 225;
-    only(&in_grids(&new), Rule::C13, Warning);
+    for (version, severity) in [(225, Warning), (226, Error)] {
+        let mut new = sound();
+        new[8] = version;
+        only(&in_grids(&new), Rule::C13, severity);
+    }
     only(
         &in_grids(&patched(&sound(), b"file_bbox_min", b"file_bbox_mim")),
         Rule::C13,
@@ -273,12 +275,13 @@ fn files_that_are_none_are_refused() {
     let refused = |name: &str, bytes: &[u8]| {
         let path: &Path = &folder.path().join(name);
         fs::write(path, bytes).unwrap();
-        check(&[path], &CheckSettings::default())
-            .unwrap_err()
-            .to_string()
+        let refused = check(&[path], &CheckSettings::default()).refused;
+        assert_eq!(refused.len(), 1);
+        refused[0].error.to_string()
     };
     assert!(refused("fur.obj", b"").contains("must end in"));
     assert!(refused("fur.usda", b"#usda 1.0\ndef \"a\" {").contains("ends within a prim"));
     assert!(refused("fur.usdc", b"").contains("no USD file"));
     assert!(refused("fur.vdb", &sound()[..200]).contains("ends too early"));
+    assert!(refused("fur.usdz", FUR.as_bytes()).contains("is a zip archive"));
 }

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 mod command;
+mod files;
 mod grids;
 
 use Severity::{Error, Warning};
@@ -24,7 +25,9 @@ fn findings(file: &Path, profile: &[Consumer]) -> Vec<Finding> {
         profile: profile.to_vec(),
         ..CheckSettings::default()
     };
-    check(&[file], &settings).unwrap()
+    let checked = check(&[file], &settings);
+    assert!(checked.refused.is_empty(), "{:?}", checked.refused);
+    checked.findings
 }
 
 /// What is found in a text, notes left out.
@@ -237,6 +240,15 @@ fn c10_primvars() {
         "[(0.5, 0.75), (0.25, 0.75), (0.5, 0.25)]",
         "[(0.5, 0.75), (0.25, 0.75)]",
     );
+    // Two numbers a strand that belong together.
+    let pairs = "float[] primvars:pair = [1, 2, 3, 4, 5, 6] (\n elementSize = 2\n interpolation = \"uniform\"\n)\n";
+    let before = "color3f[] primvars:displayColor";
+    let paired = edited(before, &format!("{pairs}{before}"));
+    assert_eq!(found(&paired, &[]), []);
+    let short = paired.replace("4, 5, 6]", "4, 5]");
+    let all = found(&short, &[]);
+    assert_eq!(all.len(), 1, "{all:?}");
+    assert!(all[0].message.contains("6 are wanted"), "{all:?}");
 }
 
 #[test]
@@ -339,7 +351,7 @@ fn c18_numbers_of_strands() {
             strands: Some(strands),
             ..CheckSettings::default()
         };
-        let all = check(&[&file], &settings).unwrap();
+        let all = check(&[&file], &settings).findings;
         let number = all
             .iter()
             .filter(|f| f.rule == Rule::C18 && f.severity == Error)
@@ -372,6 +384,31 @@ fn c19_roots() {
     assert!(
         !all.is_empty() && all.iter().all(|f| f.rule == Rule::C19),
         "{all:?}"
+    );
+}
+
+/// That roots were not held against the skin is only said where they would have been.
+#[test]
+fn c19_is_left_out_where_things_move() {
+    let notes = |text: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("fur.usda");
+        fs::write(&file, text).unwrap();
+        let all = findings(&file, &[]);
+        assert!(all.iter().all(|f| f.severity == Severity::Note), "{all:?}");
+        all.iter().filter(|f| f.rule == Rule::C19).count()
+    };
+    let before = "    def Scope \"geo\"\n    {\n";
+    let moved = edited(
+        before,
+        &format!(
+            "{before}        uniform token[] xformOpOrder = [\"xformOp:translate\"]\n        double3 xformOp:translate = (0, 0, 1)\n"
+        ),
+    );
+    assert_eq!(notes(&moved), 1);
+    assert_eq!(
+        notes(&moved.replace("primvars:skinprim ", "primvars:face ")),
+        0
     );
 }
 
