@@ -23,19 +23,24 @@ pub enum Consumer {
     Validators,
     /// OpenVDB's own library.
     OpenVdb,
+    /// LuxCore, of Cem Yuksel's hair files.
+    LuxCore,
+    /// `cyhair2pbrt`, which makes curves of pbrt of such files.
+    Pbrt,
     /// Viewers of packages on telephones and headsets. Only where asked for: fur cannot be shown there.
     Ar,
 }
 
 use Consumer::{
-    Ar, Arnold, Blender, Cycles, Houdini, Omniverse, OpenVdb, RenderMan, Storm, Unreal, Validators,
+    Ar, Arnold, Blender, Cycles, Houdini, LuxCore, Omniverse, OpenVdb, Pbrt, RenderMan, Storm,
+    Unreal, Validators,
 };
 
 impl Consumer {
     /// All there are.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Blender, Cycles, Unreal, Houdini, Arnold, RenderMan, Omniverse, Storm, Validators, OpenVdb,
-        Ar,
+        LuxCore, Pbrt, Ar,
     ];
 
     /// As on the command line.
@@ -51,6 +56,8 @@ impl Consumer {
             Storm => "storm",
             Validators => "validators",
             OpenVdb => "openvdb",
+            LuxCore => "luxcore",
+            Pbrt => "pbrt",
             Ar => "ar",
         }
     }
@@ -60,6 +67,11 @@ impl Consumer {
         Self::ALL.into_iter().find(|c| c.name() == name)
     }
 }
+
+/// All that read layers.
+pub(super) const OF_LAYERS: &[Consumer] = &[
+    Blender, Cycles, Unreal, Houdini, Arnold, RenderMan, Omniverse, Storm, Validators, Ar,
+];
 
 /// All that draw curves.
 pub(super) const DRAWING: &[Consumer] = &[

@@ -11,6 +11,7 @@ mod extent;
 mod finding;
 mod frames;
 mod groom;
+mod hair;
 mod layer;
 mod material;
 mod package;
@@ -50,7 +51,9 @@ pub struct CheckSettings {
 #[derive(Debug, thiserror::Error)]
 pub enum CheckError {
     /// A name that says nothing of what is in the file.
-    #[error("{file}: it cannot be checked, the name must end in .usda, .usdc, .usd, .usdz or .vdb")]
+    #[error(
+        "{file}: it cannot be checked, the name must end in .usda, .usdc, .usd, .usdz, .vdb or .hair"
+    )]
     Suffix {
         /// The file.
         file: String,
@@ -65,6 +68,14 @@ pub enum CheckError {
         file: String,
         /// What is wrong.
         error: UsdFileError,
+    },
+    /// A broken hair file.
+    #[error("{file}: {error}")]
+    Hair {
+        /// The file.
+        file: String,
+        /// What is wrong.
+        error: String,
     },
     /// A broken file of grids.
     #[error("{file}: {error}")]
@@ -157,6 +168,11 @@ fn check_file(
             let layer = usd_file::parse(&bytes).map_err(broken)?;
             drop(bytes);
             Ok(views::check(&layer, path, settings, findings))
+        }
+        "hair" => {
+            let bytes = read_bounded(path, LONGEST)?;
+            let lie = hair::check(&file, &bytes, settings.strands, findings);
+            lie.map_err(|error| CheckError::Hair { file, error })
         }
         _ => Err(CheckError::Suffix { file }),
     }

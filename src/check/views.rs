@@ -1,7 +1,7 @@
 //! A stage, as the file shows it and with each of its variants.
 
 use super::beside::{self, Grids, unfollowed};
-use super::consumer::Consumer;
+use super::consumer::OF_LAYERS;
 use super::curves::{self, Curves};
 use super::finding::{Findings, Place, Severity};
 use super::frames::{self, Region};
@@ -112,7 +112,7 @@ impl Stage<'_> {
 fn check_whole(roots: &[Prim], files: &Files<'_>, findings: &mut Findings<'_>) {
     let mut add = |severity, message: String, remedy: &str| {
         let (rule, place) = ((Rule::C16, severity), Place::default());
-        findings.add(rule, &Consumer::ALL, place, message, remedy);
+        findings.add(rule, OF_LAYERS, place, message, remedy);
     };
     for (file, why) in &files.unfollowed {
         let (severity, message, remedy) = unfollowed(file, why);

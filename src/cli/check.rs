@@ -18,6 +18,7 @@ use std::path::PathBuf;
   vair check fox.usda --profile blender,unreal
   vair check fox.usdc fox.vdb --json > findings.json
   vair check groom.usd --profile unreal --strict
+  vair check fox.hair --expect-strands 200000
   vair check --explain C07
 
 A finding says its rule, how bad it is (error: refused, lost or drawn wrongly; warning: ignored or drawn a
@@ -28,11 +29,12 @@ is looked at. Strands and grids of several files are held against each other.
 Ends with 0 if there are no errors, 1 if there are some or a file is broken or not there, 2 if one
 cannot be read.")]
 pub(super) struct Args {
-    /// .usda, .usdc, .usd, .usdz and .vdb files.
+    /// .usda, .usdc, .usd, .usdz, .vdb and .hair files.
     #[arg(required_unless_present = "explain", value_name = "FILE")]
     files: Vec<PathBuf>,
     /// Who is to read them: all, or some of blender, cycles, unreal, houdini, arnold, renderman, omniverse,
-    /// storm, validators, openvdb and ar (viewers of .usdz, which `all` leaves out).
+    /// storm, validators, openvdb, luxcore, pbrt (the last two of .hair) and ar (viewers of .usdz, which `all`
+    /// leaves out).
     #[arg(
         long,
         value_delimiter = ',',

@@ -10,11 +10,11 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Most prims of a stage.
-const MOST_PRIMS: usize = 1_000_000;
+/// Memory that the prims of a stage may take, without the arrays that they share with their layers, bytes.
+const MOST_MEMORY: usize = 512 << 20;
 
-/// So many properties and fields count as one more prim.
-const PROPERTIES_OF_PRIM: usize = 64;
+/// What a prim counts as at least, so that there are about a million at most.
+const LEAST_OF_PRIM: usize = 512;
 
 /// Most files that refer to one another in a row.
 const LONGEST_CHAIN: usize = 16;
@@ -99,7 +99,7 @@ pub fn compose(
     let mut composer = Composer {
         files,
         chosen,
-        room: MOST_PRIMS,
+        room: MOST_MEMORY,
     };
     composer.layer(&root, 0)
 }
@@ -177,7 +177,7 @@ fn anchor_fields(fields: &mut Fields, path: &Path) {
 struct Composer<'c, 'f> {
     files: &'c mut Files<'f>,
     chosen: &'c [(String, String)],
-    /// Prims that may still be made.
+    /// Memory that prims may still take, bytes.
     room: usize,
 }
 
@@ -193,7 +193,7 @@ impl Composer<'_, '_> {
         }
         if let Some(Value::References(sublayers)) = layer.field("subLayers") {
             for sublayer in sublayers {
-                if self.take(1, 0, chain + 1).is_none() {
+                if self.take(0, 0, chain + 1).is_none() {
                     break;
                 }
                 if let Some(layer) = self.files.layer(&sublayer.asset) {
@@ -208,9 +208,9 @@ impl Composer<'_, '_> {
         all.children
     }
 
-    /// Takes room for so many prims; `None` beyond the limits.
-    fn take(&mut self, size: usize, depth: usize, chain: usize) -> Option<()> {
-        let left = self.room.checked_sub(size);
+    /// Takes room for a prim of so many bytes; `None` beyond the limits.
+    fn take(&mut self, bytes: usize, depth: usize, chain: usize) -> Option<()> {
+        let left = self.room.checked_sub(bytes.max(LEAST_OF_PRIM));
         let left = left.filter(|_| depth <= DEEPEST && chain <= LONGEST_CHAIN);
         self.files.is_cut |= left.is_none();
         self.room = left?;
@@ -228,8 +228,7 @@ impl Composer<'_, '_> {
         depth: usize,
         chain: usize,
     ) -> Option<Prim> {
-        let size = 1 + (spec.properties.len() + spec.metadata.len()) / PROPERTIES_OF_PRIM;
-        self.take(size, depth, chain)?;
+        self.take(spec.memory(), depth, chain)?;
         let mut prim = Prim {
             name: spec.name.clone(),
             specifier: spec.specifier,

@@ -76,6 +76,21 @@ pub(super) fn field<'f>(fields: &'f Fields, name: &str) -> Option<&'f Value> {
     fields.iter().find(|(key, _)| key == name).map(|(_, v)| v)
 }
 
+/// Memory of names and values, bytes.
+pub(super) fn memory(fields: &Fields) -> usize {
+    let each = fields
+        .iter()
+        .map(|(name, value)| texts([name]) + value.memory());
+    each.sum()
+}
+
+/// Memory of texts with their heads, bytes.
+pub(super) fn texts<'t>(all: impl IntoIterator<Item = &'t String>) -> usize {
+    all.into_iter()
+        .map(|text| size_of::<String>() + text.len())
+        .sum()
+}
+
 impl Layer {
     /// A value of the layer's metadata.
     pub fn field(&self, name: &str) -> Option<&Value> {
@@ -102,6 +117,23 @@ impl Prim {
     /// Whether an applied schema is among those of the prim.
     pub fn has_api(&self, name: &str) -> bool {
         matches!(self.field("apiSchemas"), Some(Value::Texts(all)) if all.iter().any(|a| a == name))
+    }
+
+    /// Memory that a copy takes, without children and variants, bytes; about.
+    pub(super) fn memory(&self) -> usize {
+        let properties = self.properties.iter().map(|property| {
+            let samples = property.samples.iter().map(|(_, value)| value);
+            let values = property.value.iter().chain(samples);
+            let names = [&property.name, &property.type_name];
+            size_of_val(property)
+                + texts(names.into_iter().chain(&property.targets))
+                + values.map(Value::memory).sum::<usize>()
+                + memory(&property.metadata)
+        });
+        size_of_val(self)
+            + texts([&self.name, &self.type_name])
+            + memory(&self.metadata)
+            + properties.sum::<usize>()
     }
 
     /// The child of a name.

@@ -6,7 +6,8 @@
 //! kept as [`Value::Unread`].
 //!
 //! Files are not trusted: nothing is allocated for a count before the file is known to be long enough
-//! for it, compressed arrays share a budget, and prims and values nest to a limit.
+//! for it, all that a crate file unfolds to shares a budget, so do the prims that are put together, and prims
+//! and values nest to a limit.
 
 mod binary;
 mod compose;
@@ -30,8 +31,10 @@ pub use zip::{Member, members};
 /// Most levels of prims, and of values in values.
 const DEEPEST: usize = 100;
 
-/// Numbers of a crate file beyond one a byte: packed arrays and shared values may unfold to so many more.
-const UNFOLDED: u64 = 1 << 25;
+/// Memory that a crate file may unfold to, bytes: so many for each of its own, and so many more. What is packed
+/// and what is shared takes more there than in the file.
+const UNFOLDED_PER_BYTE: u64 = 16;
+const UNFOLDED: u64 = 256 << 20;
 
 /// Reads the bytes of a layer, in whichever form they are; a package is read by its first member.
 ///

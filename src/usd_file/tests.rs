@@ -312,6 +312,26 @@ fn layers_of_themselves_end() {
     assert!(files.is_cut);
 }
 
+/// A prim of half a megabyte that a thousand others refer to would be half a gigabyte.
+#[test]
+fn prims_that_are_referred_to_are_counted_each_time() {
+    let attributes: String = (0..50)
+        .map(|i| format!("string a{i} = \"{}\"\n", "x".repeat(20_000)))
+        .collect();
+    let many = |count: usize| {
+        let refer = |i| format!("def \"b{i}\" ( references = </a> ) {{}}\n");
+        let others: String = (0..count).map(refer).collect();
+        let text = format!("#usda 1.0\ndef \"a\" {{ {attributes} }}\n{others}");
+        let layer = parse(text.as_bytes()).unwrap();
+        let open = |_: &Path| Err(Unfollowed::Gone);
+        let mut files = Files::new(&open);
+        compose(&layer, Path::new("a.usda"), &mut files, &[]);
+        files.is_cut
+    };
+    assert!(!many(20));
+    assert!(many(800));
+}
+
 /// No panic and no great allocation, whatever is changed; every prefix of a crate file is refused.
 #[test]
 fn broken_files_are_refused() {

@@ -1,5 +1,6 @@
 //! Values of attributes and metadata as files have them.
 
+use super::layer::{memory, texts};
 use std::sync::Arc;
 
 /// A value. Long arrays are shared between all that have the same.
@@ -71,6 +72,19 @@ impl Value {
             Self::Texts(texts) => Some(texts.len()),
             _ => None,
         }
+    }
+
+    /// Memory that a copy takes, bytes; about. Numbers of arrays are shared.
+    pub(super) fn memory(&self) -> usize {
+        let more = match self {
+            Self::Text(text) | Self::Asset(text) => text.len(),
+            Self::Tuple(numbers) => size_of_val(numbers.as_slice()),
+            Self::Texts(all) => texts(all),
+            Self::References(all) => all.iter().map(|r| texts([&r.asset, &r.prim])).sum(),
+            Self::Dictionary(entries) => memory(entries),
+            _ => 0,
+        };
+        size_of::<Self>() + more
     }
 
     /// The value of a key of a dictionary.

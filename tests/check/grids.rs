@@ -37,7 +37,7 @@ def Xform "grids" (
 "#;
 
 /// Fog where the strands of the sound file are.
-fn fog(values: [f32; 2], voxel: f64, half: bool) -> Vec<u8> {
+pub(super) fn fog(values: [f32; 2], voxel: f64, half: bool) -> Vec<u8> {
     let leaf = |origin: [i32; 3], at: [i32; 3], value| {
         let mut leaf = Leaf::new(IVec3::from(origin), 0.0f32);
         leaf.set(IVec3::from(at), value);

@@ -6,6 +6,7 @@
 mod command;
 mod files;
 mod grids;
+mod hair;
 
 use Severity::{Error, Warning};
 use std::fs;

@@ -2,18 +2,18 @@
 
 use super::{LineSet, Lines, LinesError, WriteError, put_floats};
 use crate::io::read_bounded;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::io::Write;
 use std::path::Path;
 
 const HEADER: usize = 128;
 /// Bytes of the comment at the end of the header.
 const INFO: usize = 88;
-const SEGMENTS: u32 = 1;
-const POINTS: u32 = 2;
-const THICKNESS: u32 = 4;
-const TRANSPARENCY: u32 = 8;
-const COLORS: u32 = 16;
+pub(crate) const SEGMENTS: u32 = 1;
+pub(crate) const POINTS: u32 = 2;
+pub(crate) const THICKNESS: u32 = 4;
+pub(crate) const TRANSPARENCY: u32 = 8;
+pub(crate) const COLORS: u32 = 16;
 /// Longest file that is read, bytes.
 const LONGEST: u64 = 1 << 34;
 
@@ -33,19 +33,36 @@ pub fn read(path: &Path) -> Result<LineSet, LinesError> {
 }
 
 /// What a header says.
-struct Header {
-    strands: u64,
-    points: u64,
-    flags: u32,
-    segments: u32,
-    thickness: f32,
+pub(crate) struct Header {
+    pub(crate) strands: u64,
+    pub(crate) points: u64,
+    /// Arrays that follow.
+    pub(crate) flags: u32,
+    /// Segments of each strand and thickness, where there are no arrays.
+    pub(crate) segments: u32,
+    pub(crate) thickness: f32,
     color: Vec3,
 }
 
-pub(super) fn parse(bytes: &[u8]) -> Result<LineSet, String> {
-    let header = header(bytes)?;
-    let has = |flag: u32| header.flags & flag != 0;
-    // All of this is known to be there before anything is made.
+impl Header {
+    pub(crate) fn has(&self, flag: u32) -> bool {
+        self.flags & flag != 0
+    }
+}
+
+/// The bytes of the arrays; empty for those that are not there.
+pub(crate) struct Arrays<'b> {
+    pub(crate) segments: &'b [u8],
+    pub(crate) points: &'b [u8],
+    pub(crate) thickness: &'b [u8],
+    pub(crate) transparency: &'b [u8],
+    pub(crate) colors: &'b [u8],
+    /// Bytes behind the last array.
+    pub(crate) rest: &'b [u8],
+}
+
+/// Finds the arrays, all of them known to be there.
+pub(crate) fn arrays<'b>(header: &Header, bytes: &'b [u8]) -> Result<Arrays<'b>, String> {
     let sizes = [
         (SEGMENTS, 2 * header.strands),
         (POINTS, 12 * header.points),
@@ -56,7 +73,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<LineSet, String> {
     let mut at = HEADER as u64;
     let parts = sizes.map(|(flag, size)| {
         let start = at;
-        at += if has(flag) { size } else { 0 };
+        at += if header.has(flag) { size } else { 0 };
         start..at
     });
     if at > bytes.len() as u64 {
@@ -68,14 +85,28 @@ pub(super) fn parse(bytes: &[u8]) -> Result<LineSet, String> {
         ));
     }
     let part = |i: usize| &bytes[parts[i].start as usize..parts[i].end as usize];
-    let offsets = offsets(&header, part(0))?;
-    let points = vectors(part(1));
-    let widths = match has(THICKNESS) {
-        true => floats(part(2)).collect(),
+    Ok(Arrays {
+        segments: part(0),
+        points: part(1),
+        thickness: part(2),
+        transparency: part(3),
+        colors: part(4),
+        rest: &bytes[at as usize..],
+    })
+}
+
+pub(super) fn parse(bytes: &[u8]) -> Result<LineSet, String> {
+    let header = header(bytes)?;
+    refuse(&header)?;
+    let arrays = arrays(&header, bytes)?;
+    let offsets = offsets(&header, arrays.segments)?;
+    let points = vectors(arrays.points);
+    let widths = match header.has(THICKNESS) {
+        true => floats(arrays.thickness).collect(),
         false => vec![header.thickness; points.len()],
     };
-    let colors = match has(COLORS) {
-        true => vectors(part(4)),
+    let colors = match header.has(COLORS) {
+        true => vectors(arrays.colors),
         false => vec![header.color; points.len()],
     };
     let set = LineSet {
@@ -88,7 +119,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<LineSet, String> {
     Ok(set)
 }
 
-fn header(bytes: &[u8]) -> Result<Header, String> {
+/// Reads the header of a hair file.
+pub(crate) fn header(bytes: &[u8]) -> Result<Header, String> {
     if bytes.len() < HEADER {
         return Err(format!("{} bytes are too few for a hair file", bytes.len()));
     }
@@ -97,14 +129,18 @@ fn header(bytes: &[u8]) -> Result<Header, String> {
     }
     let word = |i: usize| u32::from_le_bytes([0, 1, 2, 3].map(|k| bytes[4 * i + k]));
     let number = |i: usize| f32::from_bits(word(i));
-    let header = Header {
+    Ok(Header {
         strands: u64::from(word(1)),
         points: u64::from(word(2)),
         flags: word(3),
         segments: word(4),
         thickness: number(5),
         color: Vec3::new(number(7), number(8), number(9)),
-    };
+    })
+}
+
+/// Refuses a header of which no strands can be made.
+fn refuse(header: &Header) -> Result<(), String> {
     if header.strands == 0 {
         return Err("the header announces no strands".to_owned());
     }
@@ -117,7 +153,7 @@ fn header(bytes: &[u8]) -> Result<Header, String> {
             "the header announces arrays of unknown kind ({unknown:#x})"
         ));
     }
-    Ok(header)
+    Ok(())
 }
 
 fn offsets(header: &Header, segments: &[u8]) -> Result<Vec<u32>, String> {
@@ -179,12 +215,14 @@ fn check(set: &LineSet) -> Result<(), String> {
     Ok(())
 }
 
-fn floats(bytes: &[u8]) -> impl Iterator<Item = f32> {
+/// Numbers of an array.
+pub(crate) fn floats(bytes: &[u8]) -> impl Iterator<Item = f32> {
     let each = bytes.chunks_exact(4);
     each.map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
 }
 
-fn vectors(bytes: &[u8]) -> Vec<Vec3> {
+/// Points or colors of an array.
+pub(crate) fn vectors(bytes: &[u8]) -> Vec<Vec3> {
     let each = bytes.chunks_exact(12);
     each.map(|b| {
         let mut c = floats(b);
@@ -206,8 +244,15 @@ pub(super) fn write(out: &mut impl Write, lines: &Lines<'_>) -> Result<(), Write
     for word in [strands as u32, lines.points.len() as u32, flags, 0] {
         head.extend(word.to_le_bytes());
     }
-    // Thickness, transparency and color of files without those arrays.
-    for number in [0.0f32, 0.0, 1.0, 1.0, 1.0] {
+    // Thickness, transparency and color, for readers that do not take them from the arrays: the means.
+    let count = lines.points.len().max(1) as f64;
+    let thickness = lines.widths.iter().map(|w| f64::from(*w)).sum::<f64>() / count;
+    let sum = |sum: DVec3, color: &Vec3| sum + color.as_dvec3();
+    let color = match lines.colors {
+        [] => DVec3::ONE,
+        colors => colors.iter().fold(DVec3::ZERO, sum) / count,
+    };
+    for number in [thickness, 0.0, color.x, color.y, color.z].map(|n| n as f32) {
         head.extend(number.to_le_bytes());
     }
     let mut info = lines.origin.as_bytes()[..lines.origin.len().min(INFO - 1)].to_vec();

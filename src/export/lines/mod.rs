@@ -10,7 +10,7 @@
 
 mod error;
 mod glb;
-mod hair;
+pub(crate) mod hair;
 mod npz;
 mod pbrt;
 mod ply;

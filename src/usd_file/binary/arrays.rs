@@ -3,11 +3,15 @@
 use super::coding::integers;
 use super::scalar::{Scalar, shape};
 use super::sized;
-use super::values::{ASSET, SINGLE, STRING, TOKEN, Values};
+use super::values::{ASSET, ITEM, STRING, TOKEN, Values};
 use crate::cursor::Cursor;
 use crate::usd_file::error::UsdFileError as Error;
 use crate::usd_file::text_values::to_f32;
 use crate::usd_file::value::Value;
+
+/// Memory of a number of an array, bytes.
+const INTEGER: u64 = 8;
+const FLOAT: u64 = 4;
 
 /// Shorter arrays are stored plain, whatever their word says.
 const LEAST_PACKED: u64 = 16;
@@ -27,7 +31,7 @@ impl Values<'_> {
         };
         let packed = packed && count >= LEAST_PACKED;
         if let STRING | TOKEN | ASSET = kind {
-            self.spend(count.saturating_mul(SINGLE))?;
+            self.spend(count.saturating_mul(ITEM))?;
             let texts: Result<_, Error> =
                 (0..count).map(|_| self.text(kind, &mut cursor)).collect();
             return Ok(Value::Texts(texts?));
@@ -37,7 +41,7 @@ impl Values<'_> {
         };
         match (width, scalar.is_float(), packed) {
             (1, false, false) => {
-                self.plain(count, scalar.bytes(), &cursor)?;
+                self.plain(count, INTEGER, scalar.bytes(), &cursor)?;
                 let ints: Result<Vec<i64>, Error> =
                     (0..count).map(|_| Ok(scalar.int(&mut cursor)?)).collect();
                 Ok(Value::Ints(ints?.into()))
@@ -56,8 +60,16 @@ impl Values<'_> {
     }
 
     /// That numbers which stand as they are do, and are not too many.
-    fn plain(&mut self, count: u64, bytes: u64, cursor: &Cursor<'_>) -> Result<(), Error> {
-        self.spend(count)?;
+    ///
+    /// * `size`: of a number in memory, bytes. * `bytes`: of one in the file.
+    fn plain(
+        &mut self,
+        count: u64,
+        size: u64,
+        bytes: u64,
+        cursor: &Cursor<'_>,
+    ) -> Result<(), Error> {
+        self.spend(count.saturating_mul(size))?;
         cursor.clone().take(count.saturating_mul(bytes))?;
         Ok(())
     }
@@ -70,7 +82,7 @@ impl Values<'_> {
         cursor: &mut Cursor<'_>,
     ) -> Result<Value, Error> {
         let count = count.saturating_mul(width as u64);
-        self.plain(count, scalar.bytes(), cursor)?;
+        self.plain(count, FLOAT, scalar.bytes(), cursor)?;
         let bytes = cursor.take(count * scalar.bytes())?;
         let values = match scalar {
             Scalar::Float => {
@@ -95,7 +107,7 @@ impl Values<'_> {
         count: u64,
         cursor: &mut Cursor<'_>,
     ) -> Result<Vec<i64>, Error> {
-        self.spend(count)?;
+        self.spend(count.saturating_mul(INTEGER))?;
         let packed = sized(cursor)?;
         match scalar {
             Scalar::I64 | Scalar::U64 => integers::<8>(packed, count),
@@ -118,7 +130,7 @@ impl Values<'_> {
             }
             b't' => {
                 let size = u64::from(cursor.u32()?);
-                self.plain(size, scalar.bytes(), cursor)?;
+                self.plain(size, INTEGER, scalar.bytes(), cursor)?;
                 let table: Result<Vec<f64>, Error> =
                     (0..size).map(|_| Ok(scalar.read(cursor)?)).collect();
                 let table = table?;

@@ -5,6 +5,8 @@
 
 mod arrays;
 mod coding;
+#[cfg(test)]
+mod hostile_tests;
 mod scalar;
 mod tree;
 mod values;
@@ -24,6 +26,27 @@ const MOST_PATHS: u64 = 2_000_000;
 /// Most entries of the other tables, and bytes of all tokens.
 const MOST_ENTRIES: u64 = 16_000_000;
 const MOST_TEXT: u64 = 256 << 20;
+
+/// Entries and bytes of tokens that the tables of any file may have; more for long files only.
+const FEW_ENTRIES: u64 = 1 << 20;
+const SHORT_TEXT: u64 = 16 << 20;
+
+/// How long the tables of a file may be: packed ones could be far longer than the file.
+#[derive(Clone, Copy)]
+struct Limits {
+    entries: u64,
+    text: u64,
+}
+
+impl Limits {
+    fn of(bytes: &[u8]) -> Self {
+        let length = bytes.len() as u64;
+        Self {
+            entries: MOST_ENTRIES.min(FEW_ENTRIES + 4 * length),
+            text: MOST_TEXT.min(SHORT_TEXT + 16 * length),
+        }
+    }
+}
 
 /// The tables of a file.
 struct Tables {
@@ -83,13 +106,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Layer, UsdFileError> {
             .map(|(_, cursor)| cursor.clone())
             .ok_or_else(|| UsdFileError::at("the directory", format!("it names no table {name}")))
     };
+    let limits = Limits::of(bytes);
     let tables = Tables {
-        tokens: tokens(section("TOKENS")?)?,
+        tokens: tokens(section("TOKENS")?, limits)?,
         strings: strings(section("STRINGS")?)?,
-        fields: fields(section("FIELDS")?)?,
-        field_sets: table_of_numbers(&mut section("FIELDSETS")?)?,
-        paths: paths(section("PATHS")?)?,
-        specs: specs(section("SPECS")?)?,
+        fields: fields(section("FIELDS")?, limits)?,
+        field_sets: table_of_numbers(&mut section("FIELDSETS")?, limits)?,
+        paths: paths(section("PATHS")?, limits)?,
+        specs: specs(section("SPECS")?, limits)?,
     };
     tree::layer(&tables, &mut Values::new(bytes, version, &tables))
 }
@@ -101,23 +125,23 @@ fn sized<'b>(cursor: &mut Cursor<'b>) -> Result<&'b [u8], UsdFileError> {
 }
 
 /// A count, and as many packed numbers.
-fn table_of_numbers(cursor: &mut Cursor<'_>) -> Result<Vec<u32>, UsdFileError> {
+fn table_of_numbers(cursor: &mut Cursor<'_>, limits: Limits) -> Result<Vec<u32>, UsdFileError> {
     let count = cursor.u64()?;
-    numbers(cursor, count)
+    numbers(cursor, count, limits)
 }
 
-fn numbers(cursor: &mut Cursor<'_>, count: u64) -> Result<Vec<u32>, UsdFileError> {
-    if count > MOST_ENTRIES {
+fn numbers(cursor: &mut Cursor<'_>, count: u64, limits: Limits) -> Result<Vec<u32>, UsdFileError> {
+    if count > limits.entries {
         return Err(UsdFileError::TooLarge);
     }
     let numbers = integers::<4>(sized(cursor)?, count)?;
     Ok(numbers.into_iter().map(|n| n as u32).collect())
 }
 
-fn tokens(mut cursor: Cursor<'_>) -> Result<Vec<String>, UsdFileError> {
+fn tokens(mut cursor: Cursor<'_>, limits: Limits) -> Result<Vec<String>, UsdFileError> {
     let count = cursor.u64()?;
     let size = cursor.u64()?;
-    if count > MOST_PATHS || size > MOST_TEXT {
+    if count > MOST_PATHS.min(limits.entries) || size > limits.text {
         return Err(UsdFileError::TooLarge);
     }
     let text = decompress(sized(&mut cursor)?, size)?;
@@ -139,8 +163,8 @@ fn strings(mut cursor: Cursor<'_>) -> Result<Vec<u32>, UsdFileError> {
     (0..count).map(|_| Ok(cursor.u32()?)).collect()
 }
 
-fn fields(mut cursor: Cursor<'_>) -> Result<Vec<(u32, u64)>, UsdFileError> {
-    let names = table_of_numbers(&mut cursor)?;
+fn fields(mut cursor: Cursor<'_>, limits: Limits) -> Result<Vec<(u32, u64)>, UsdFileError> {
+    let names = table_of_numbers(&mut cursor, limits)?;
     let words = decompress(sized(&mut cursor)?, 8 * names.len() as u64)?;
     let mut words = Cursor::new(&words, 0);
     names
@@ -149,11 +173,11 @@ fn fields(mut cursor: Cursor<'_>) -> Result<Vec<(u32, u64)>, UsdFileError> {
         .collect()
 }
 
-fn specs(mut cursor: Cursor<'_>) -> Result<Vec<Spec>, UsdFileError> {
+fn specs(mut cursor: Cursor<'_>, limits: Limits) -> Result<Vec<Spec>, UsdFileError> {
     let count = cursor.u64()?;
-    let paths = numbers(&mut cursor, count)?;
-    let fields = numbers(&mut cursor, count)?;
-    let kinds = numbers(&mut cursor, count)?;
+    let paths = numbers(&mut cursor, count, limits)?;
+    let fields = numbers(&mut cursor, count, limits)?;
+    let kinds = numbers(&mut cursor, count, limits)?;
     let specs = paths.into_iter().zip(fields).zip(kinds);
     Ok(specs
         .map(|((path, fields), kind)| Spec { path, fields, kind })
@@ -162,15 +186,15 @@ fn specs(mut cursor: Cursor<'_>) -> Result<Vec<Spec>, UsdFileError> {
 
 /// Paths by number, from the tree that the file holds as a list: a jump is -2 for a leaf, -1 if only a child
 /// follows, 0 if only the next sibling does, or the distance to the next sibling behind the children.
-fn paths(mut cursor: Cursor<'_>) -> Result<Vec<Path>, UsdFileError> {
+fn paths(mut cursor: Cursor<'_>, limits: Limits) -> Result<Vec<Path>, UsdFileError> {
     let count = cursor.u64()?;
     let encoded = cursor.u64()?;
     if count.max(encoded) > MOST_PATHS {
         return Err(UsdFileError::TooLarge);
     }
-    let indices = numbers(&mut cursor, encoded)?;
-    let elements = numbers(&mut cursor, encoded)?;
-    let jumps = numbers(&mut cursor, encoded)?;
+    let indices = numbers(&mut cursor, encoded, limits)?;
+    let elements = numbers(&mut cursor, encoded, limits)?;
+    let jumps = numbers(&mut cursor, encoded, limits)?;
     if count > encoded {
         return Err(cursor.error("fewer paths than announced").into());
     }

@@ -15,6 +15,9 @@ const RELATIONSHIP: u32 = 8;
 const VARIANT: u32 = 10;
 const VARIANT_SET: u32 = 11;
 
+/// Memory of a prim or a property, without what it has, bytes.
+const SPEC: u64 = 192;
+
 /// Ends a set of fields.
 const END: u32 = u32::MAX;
 
@@ -117,7 +120,7 @@ impl<'t> Builder<'t> {
                 .get(number as usize)
                 .ok_or_else(missing)?;
             let name = self.tables.tokens.get(name as usize).ok_or_else(missing)?;
-            fields.push((name.clone(), values.value(word)?));
+            fields.push((values.named(name)?, values.value(word)?));
         }
         Ok(fields)
     }
@@ -128,8 +131,9 @@ impl<'t> Builder<'t> {
             let reason = format!("prims are nested deeper than {DEEPEST} levels");
             return Err(UsdFileError::at(format!("path {path}"), reason));
         }
+        values.spend(SPEC)?;
         let mut prim = Prim {
-            name: self.element(path)?.to_owned(),
+            name: values.named(self.element(path)?)?,
             ..Prim::default()
         };
         let mut fields = self.fields(path, values)?;
@@ -188,8 +192,9 @@ impl<'t> Builder<'t> {
         kind: u32,
         values: &mut Values<'_>,
     ) -> Result<Property, UsdFileError> {
+        values.spend(SPEC)?;
         let mut property = Property {
-            name: self.element(path)?.to_owned(),
+            name: values.named(self.element(path)?)?,
             ..Property::default()
         };
         for (name, value) in self.fields(path, values)? {

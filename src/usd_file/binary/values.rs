@@ -5,7 +5,7 @@ use super::scalar::{Scalar, shape};
 use crate::cursor::Cursor;
 use crate::usd_file::error::UsdFileError as Error;
 use crate::usd_file::value::{Reference, Value};
-use crate::usd_file::{DEEPEST, UNFOLDED};
+use crate::usd_file::{DEEPEST, UNFOLDED, UNFOLDED_PER_BYTE};
 use std::collections::HashMap;
 
 /// Version of a file.
@@ -15,8 +15,11 @@ const IS_ARRAY: u64 = 1 << 63;
 const IS_INLINED: u64 = 1 << 62;
 const IS_COMPRESSED: u64 = 1 << 61;
 
-/// Numbers that a value which is no array counts as.
-pub(super) const SINGLE: u64 = 16;
+/// Memory of a field, with its name and value but without their texts and numbers, bytes.
+const FIELD: u64 = 96;
+
+/// Memory of a text in a list, without its letters, bytes.
+pub(super) const ITEM: u64 = 40;
 
 /// Pixar's numbers of the types that are not numbers.
 pub(super) const STRING: u8 = 10;
@@ -47,7 +50,7 @@ pub(super) struct Values<'b> {
     tables: &'b Tables,
     /// Arrays that are read already, by their word: many attributes may have the same.
     arrays: HashMap<u64, Value>,
-    /// Numbers that may still be read.
+    /// Memory that values, prims and properties may still take, bytes.
     budget: u64,
     depth: usize,
 }
@@ -59,14 +62,14 @@ impl<'b> Values<'b> {
             version,
             tables,
             arrays: HashMap::new(),
-            budget: bytes.len() as u64 + UNFOLDED,
+            budget: UNFOLDED_PER_BYTE * bytes.len() as u64 + UNFOLDED,
             depth: 0,
         }
     }
 
-    /// Takes things from what a file may hold in all.
-    pub(super) fn spend(&mut self, count: u64) -> Result<(), Error> {
-        let left = self.budget.checked_sub(count);
+    /// Takes memory from what a file may unfold to in all.
+    pub(super) fn spend(&mut self, bytes: u64) -> Result<(), Error> {
+        let left = self.budget.checked_sub(bytes);
         self.budget = left.ok_or(Error::TooLarge)?;
         Ok(())
     }
@@ -74,7 +77,13 @@ impl<'b> Values<'b> {
     /// The value of a word.
     pub(super) fn value(&mut self, word: u64) -> Result<Value, Error> {
         let (kind, payload) = ((word >> 48) as u8, word & ((1 << 48) - 1));
+        self.spend(FIELD)?;
         if word & IS_ARRAY != 0 {
+            // Numbers are shared, texts are not.
+            if let Some(Value::Texts(texts)) = self.arrays.get(&word) {
+                let size = texts.iter().map(|text| ITEM + text.len() as u64).sum();
+                self.spend(size)?;
+            }
             if let Some(known) = self.arrays.get(&word) {
                 return Ok(known.clone());
             }
@@ -82,7 +91,6 @@ impl<'b> Values<'b> {
             self.arrays.insert(word, array.clone());
             return Ok(array);
         }
-        self.spend(SINGLE)?;
         if word & IS_INLINED != 0 {
             return self.inlined(kind, payload as u32);
         }
@@ -96,7 +104,7 @@ impl<'b> Values<'b> {
         value
     }
 
-    fn inlined(&self, kind: u8, payload: u32) -> Result<Value, Error> {
+    fn inlined(&mut self, kind: u8, payload: u32) -> Result<Value, Error> {
         let bytes = payload.to_le_bytes();
         Ok(match (kind, shape(kind)) {
             (STRING, _) => Value::Text(self.string(payload)?),
@@ -111,6 +119,7 @@ impl<'b> Values<'b> {
             (_, Some((scalar, 1))) => Value::Number(scalar.read(&mut Cursor::new(&bytes, 0))?),
             // Small whole numbers: all of a vector, the diagonal of a matrix.
             (13..=15, Some((_, count))) => {
+                self.spend(8 * count as u64)?;
                 let edge = count.isqrt();
                 let mut matrix = vec![0.0; count];
                 for i in 0..edge {
@@ -125,20 +134,28 @@ impl<'b> Values<'b> {
         })
     }
 
-    fn token(&self, index: u32) -> Result<String, Error> {
-        let token = self.tables.tokens.get(index as usize).cloned();
-        token.ok_or_else(|| Error::at("a value", format!("there is no token {index}")))
+    fn token(&mut self, index: u32) -> Result<String, Error> {
+        let token = self.tables.tokens.get(index as usize);
+        let missing = || Error::at("a value", format!("there is no token {index}"));
+        self.named(token.ok_or_else(missing)?)
     }
 
-    fn string(&self, index: u32) -> Result<String, Error> {
+    /// A name of its own.
+    pub(super) fn named(&mut self, name: &str) -> Result<String, Error> {
+        self.spend(name.len() as u64)?;
+        Ok(name.to_owned())
+    }
+
+    fn string(&mut self, index: u32) -> Result<String, Error> {
         let token = self.tables.strings.get(index as usize);
         let missing = || Error::at("a value", format!("there is no string {index}"));
         self.token(*token.ok_or_else(missing)?)
     }
 
     /// A path as text; empty for a number that no path has.
-    fn path(&self, index: u32) -> Result<String, Error> {
-        let paths = &self.tables.paths;
+    fn path(&mut self, index: u32) -> Result<String, Error> {
+        let tables = self.tables;
+        let paths = &tables.paths;
         let mut elements = Vec::new();
         let mut at = index;
         while let Some(path) = paths.get(at as usize).filter(|path| path.depth > 0) {
@@ -162,6 +179,7 @@ impl<'b> Values<'b> {
 
     fn outside(&mut self, kind: u8, mut cursor: Cursor<'b>) -> Result<Value, Error> {
         if let Some((scalar, width)) = shape(kind) {
+            self.spend(8 * width as u64)?;
             let numbers: Result<Vec<f64>, Error> =
                 (0..width).map(|_| Ok(scalar.read(&mut cursor)?)).collect();
             let numbers = numbers?;
@@ -200,7 +218,7 @@ impl<'b> Values<'b> {
             }
             VARIANT_SELECTIONS => {
                 let count = cursor.count(8)?;
-                self.spend(SINGLE * count)?;
+                self.spend(FIELD * count)?;
                 let mut entries = Vec::new();
                 for _ in 0..count {
                     let (set, variant) = (cursor.u32()?, cursor.u32()?);
@@ -214,7 +232,7 @@ impl<'b> Values<'b> {
     }
 
     /// A token, string or path, as an item of a list of some type.
-    pub(super) fn text(&self, kind: u8, cursor: &mut Cursor<'_>) -> Result<String, Error> {
+    pub(super) fn text(&mut self, kind: u8, cursor: &mut Cursor<'_>) -> Result<String, Error> {
         let index = cursor.u32()?;
         match kind {
             TOKEN | TOKEN_LIST_OP | TOKEN_VECTOR | ASSET => self.token(index),
@@ -225,7 +243,7 @@ impl<'b> Values<'b> {
 
     fn texts(&mut self, kind: u8, cursor: &mut Cursor<'_>) -> Result<Vec<String>, Error> {
         let count = cursor.count(4)?;
-        self.spend(SINGLE * count)?;
+        self.spend(ITEM * count)?;
         (0..count).map(|_| self.text(kind, cursor)).collect()
     }
 
@@ -243,7 +261,7 @@ impl<'b> Values<'b> {
                 continue;
             }
             let count = cursor.count(size)?;
-            self.spend(SINGLE * count)?;
+            self.spend(2 * ITEM * count)?;
             for _ in 0..count {
                 items.push(item(self, cursor)?);
             }
@@ -251,7 +269,7 @@ impl<'b> Values<'b> {
         Ok(items)
     }
 
-    fn reference(&self, cursor: &mut Cursor<'_>, has_offset: bool) -> Result<Reference, Error> {
+    fn reference(&mut self, cursor: &mut Cursor<'_>, has_offset: bool) -> Result<Reference, Error> {
         let asset = self.string(cursor.u32()?)?;
         let prim = self.path(cursor.u32()?)?;
         if has_offset {
