@@ -33,6 +33,7 @@ pub mod math;
 pub mod mesh_file;
 pub mod micrograph;
 mod pages;
+mod polyline_file;
 pub mod progress;
 pub mod render;
 pub mod sampling;

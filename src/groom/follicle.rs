@@ -52,6 +52,8 @@ pub(super) struct Root {
     pub(super) normal: Vec3,
     /// Unit, tangent.
     pub(super) combing: Vec3,
+    /// The same as the skin has it, before anything combs it.
+    pub(super) lay: Vec3,
     /// Factor on length.
     pub(super) length: f32,
     /// What else varies over the skin.
@@ -148,12 +150,14 @@ impl<'a> Surface<'a> {
             (b - a).cross(c - a).normalize_or(Vec3::Y)
         });
         let combing = self.blend(follicle, &self.skin.combing);
+        let lay = (combing - normal * combing.dot(normal))
+            .try_normalize()
+            .unwrap_or_else(|| normal.any_orthonormal_vector());
         Root {
             position: follicle.position,
             normal,
-            combing: (combing - normal * combing.dot(normal))
-                .try_normalize()
-                .unwrap_or_else(|| normal.any_orthonormal_vector()),
+            combing: lay,
+            lay,
             length: self.blend(follicle, &self.skin.length),
             vary: Varied::NONE,
         }

@@ -2,6 +2,9 @@
 
 mod clump;
 mod coat;
+mod comb;
+#[cfg(test)]
+mod comb_tests;
 mod cover;
 mod error;
 mod field;
@@ -25,6 +28,7 @@ use crate::progress::{Cancel, Progress};
 use crate::skin::Skin;
 use crate::species::Species;
 use coat::Coat;
+use comb::Comb;
 use field::Field;
 use follicle::{Follicle, Surface};
 use glam::{Vec2, Vec3};
@@ -193,6 +197,7 @@ pub fn grow(
         Some(recipe) => Some(Coat::paint(skin, recipe, settings.seed, cancel)?),
         None => None,
     };
+    let comb = Comb::new(&species.groom.comb, skin);
     let field = (skin.gravity == 0.0).then(|| Field::new(skin));
     let mut groom = Groom {
         classes: species.classes.iter().map(|c| c.name.clone()).collect(),
@@ -203,7 +208,9 @@ pub fn grow(
         skin_tint: (coat.iter())
             .flat_map(|coat| coat.skin_tint(skin, species))
             .collect(),
-        warnings: coat.iter().flat_map(|c| c.warnings.clone()).collect(),
+        warnings: (coat.iter().flat_map(|c| c.warnings.clone()))
+            .chain(comb.iter().flat_map(|c| c.warnings.clone()))
+            .collect(),
         width_scale: plan.iter().map(|c| c.width_scale as f32).collect(),
         natural: plan.iter().map(|c| c.natural).collect(),
         offsets: vec![0],
@@ -215,6 +222,9 @@ pub fn grow(
         let root_of = |follicle: &Follicle| {
             let mut root = surface.root(follicle);
             root.vary = variation.at(root.position, surface.uv(follicle));
+            if let Some(comb) = &comb {
+                root.combing = comb.lay(root.position, root.normal, root.lay, root.vary.comb);
+            }
             root
         };
         let diameter = species.classes[class].groom.diameter_um;
@@ -247,6 +257,7 @@ pub fn grow(
             &species.classes[class].groom,
             skin,
             field.as_ref(),
+            comb.as_ref(),
             settings.seed,
             width_scale,
         );

@@ -1,6 +1,7 @@
 //! The shape of one hair.
 
 use super::clump::Clumps;
+use super::comb::Comb;
 use super::field::Field;
 use super::follicle::Root;
 use crate::sampling::{Rng, hash64};
@@ -77,6 +78,7 @@ pub(super) struct Grower<'a> {
     gravity: f32,
     floor: f32,
     field: Option<&'a Field>,
+    comb: Option<&'a Comb>,
     seed: u64,
     drift: OpenSimplex,
     clumps: Clumps,
@@ -105,10 +107,12 @@ struct Luck {
 
 impl<'a> Grower<'a> {
     /// * `field`: the space above the skin, `None` for hair that hangs free of it.
+    /// * `comb`: what the lay follows beside the skin.
     pub(super) fn new(
         class: &'a ClassGroom,
         skin: &Skin,
         field: Option<&'a Field>,
+        comb: Option<&'a Comb>,
         seed: u64,
         width_scale: f64,
     ) -> Self {
@@ -129,6 +133,7 @@ impl<'a> Grower<'a> {
             gravity: skin.gravity.clamp(0.0, 1.0),
             floor: skin.floor.unwrap_or(f32::NEG_INFINITY),
             field,
+            comb,
             seed,
             drift: OpenSimplex::new(hash64(seed ^ 0x6472_6966) as u32),
             clumps: Clumps {
@@ -210,6 +215,7 @@ impl<'a> Grower<'a> {
         let emergence = class.emergence_deg.to_radians() as f32 * root.vary.tilt;
         let emergence = emergence * self.dry() + shared_lift;
         let lean = |turn: f32, lift: f32| Lean {
+            turn,
             combing: Quat::from_axis_angle(root.normal, turn) * root.combing,
             emergence: (emergence + lift).clamp(LOWEST, FRAC_PI_2),
         };
@@ -286,6 +292,12 @@ impl<'a> Grower<'a> {
             normal = normal.lerp(above.normal, FOLLOW).normalize_or(normal);
             combing = Quat::from_rotation_arc(root.normal, normal) * combing;
         }
+        if let Some(comb) = self.comb {
+            // Hair follows a curve or whorl along its whole length.
+            let lay = Quat::from_rotation_arc(root.normal, normal) * root.lay;
+            let lay = comb.lay(from, normal, lay, root.vary.comb);
+            combing = Quat::from_axis_angle(normal, lean.turn) * lay;
+        }
         let downhill = normal * normal.y - Vec3::Y;
         let lay = (combing + SAG * middle * downhill).normalize_or(combing);
         let direction = lay * angle.cos() + normal * angle.sin();
@@ -313,6 +325,8 @@ impl<'a> Grower<'a> {
 }
 
 struct Lean {
+    /// From the lay, about the normal, radians.
+    turn: f32,
     combing: Vec3,
     emergence: f32,
 }

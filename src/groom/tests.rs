@@ -94,6 +94,7 @@ pub(super) fn fox() -> Species {
         summary: String::new(),
         classes: vec![class("guard", guard), class("under", under)],
         skin_color: [0.5; 3],
+        groom: Default::default(),
         coat: None,
         text: String::new(),
     }

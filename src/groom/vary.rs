@@ -25,6 +25,8 @@ pub(super) struct Varied {
     pub(super) frizz: f32,
     /// Factor on the emergence angle.
     pub(super) tilt: f32,
+    /// Factor on the strength of combing curves.
+    pub(super) comb: f32,
     /// Turn of the lay about the normal, radians.
     pub(super) turn: f32,
 }
@@ -39,6 +41,7 @@ impl Varied {
         clump: 1.0,
         frizz: 1.0,
         tilt: 1.0,
+        comb: 1.0,
         turn: 0.0,
     };
 }
@@ -90,6 +93,7 @@ impl<'a> Variation<'a> {
                 VaryWhat::Clump => all.clump *= value,
                 VaryWhat::Frizz => all.frizz *= value,
                 VaryWhat::Tilt => all.tilt *= value,
+                VaryWhat::Comb => all.comb *= value,
                 VaryWhat::Turn => all.turn += value.to_radians(),
             }
         }

@@ -51,6 +51,8 @@ pub struct Skin {
     pub view: Vec3,
     /// Direction in which the head looks, unit and level.
     pub front: Vec3,
+    /// How its file was read: what else is in that file's coordinates is placed alike.
+    pub placing: Placing,
     /// Where named places of the body are; empty for skins that are no bodies.
     pub landmarks: Vec<(Landmark, Vec<Vec3>)>,
     /// Length of the body from nose to root of the tail, meters, of built-in bodies: coats are scaled to
@@ -95,6 +97,20 @@ impl Default for Placing {
     }
 }
 
+impl Placing {
+    /// A point of the file in meters, Y up.
+    pub(crate) fn place(self, point: Vec3) -> Vec3 {
+        self.turn(point) * self.unit_m
+    }
+
+    fn turn(self, v: Vec3) -> Vec3 {
+        match self.up {
+            Up::Y => v,
+            Up::Z => Vec3::new(v.x, v.z, -v.y),
+        }
+    }
+}
+
 /// As [`load`], for files in other units or with another axis up. Built-in skins are what they are.
 ///
 /// # Errors
@@ -121,17 +137,15 @@ fn load_file(name: &str, placing: Placing) -> Result<Skin, SkinError> {
         });
     }
     let mut mesh = mesh_file::read(path)?;
-    let turned = |v: Vec3| match placing.up {
-        Up::Y => v,
-        Up::Z => Vec3::new(v.x, v.z, -v.y),
-    };
     for p in &mut mesh.positions {
-        *p = turned(*p) * unit_m;
+        *p = placing.place(*p);
     }
     for n in &mut mesh.normals {
-        *n = turned(*n);
+        *n = placing.turn(*n);
     }
-    mesh.into_skin(name)
+    let mut skin = mesh.into_skin(name)?;
+    skin.placing = placing;
+    Ok(skin)
 }
 
 impl Skin {

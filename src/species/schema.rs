@@ -88,6 +88,13 @@ fn property(field: &Field, definitions: &mut Map<String, Value>) -> Value {
         })),
         Kind::Setting(range) => number("number", *range),
         Kind::Count(range) => number("integer", *range),
+        Kind::Point(range) => point(*range),
+        Kind::Points(most, range) => json!({
+            "type": "array",
+            "minItems": 2,
+            "maxItems": most,
+            "items": point(*range),
+        }),
         Kind::Words(choices) => {
             json!({ "type": "object", "additionalProperties": one_of(choices) })
         }
@@ -132,6 +139,10 @@ fn number(kind: &str, range: Range) -> Value {
         number["$comment"] = json!(range.unit);
     }
     number
+}
+
+fn point(range: Range) -> Value {
+    json!({ "type": "array", "minItems": 3, "maxItems": 3, "items": number("number", range) })
 }
 
 /// A value by itself, or with its origin beside it.

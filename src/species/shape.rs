@@ -63,6 +63,10 @@ pub(crate) enum Kind {
     Setting(Range),
     /// As `Setting`, whole.
     Count(Range),
+    /// A place in space: three numbers that are no measurement.
+    Point(Range),
+    /// Two to so many of them, a line.
+    Points(usize, Range),
     /// Table of free keys, each with one of these words.
     Words(&'static [Choice]),
     /// One of these words.

@@ -1,6 +1,7 @@
 //! Second pass over a species file: from checked values to a [`Species`], with the rules that join
 //! several values. Reports what is missing or contradicts itself; goes on after each problem.
 
+mod comb;
 mod groom;
 mod materials;
 mod medulla;
@@ -53,6 +54,7 @@ pub(crate) fn build(
         }
     }
     let coat = reader.coat(root);
+    let groom = reader.shared_groom(root);
     if !complete || classes.is_empty() {
         return None;
     }
@@ -65,6 +67,7 @@ pub(crate) fn build(
         synonyms: texts(root, "synonyms"),
         summary: text_of(root, "summary")?,
         classes,
+        groom,
         coat: coat?,
         skin_color: skin?.try_into().ok()?,
         text: text + &as_comments(&reader.recipes),

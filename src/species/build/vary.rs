@@ -33,7 +33,7 @@ impl Reader<'_> {
         };
         let (low, high) = match what {
             VaryWhat::Turn => (-360.0, 360.0),
-            VaryWhat::Density => (0.0, 1.0),
+            VaryWhat::Density | VaryWhat::Comb => (0.0, 1.0),
             _ => (0.0, 10.0),
         };
         for (key, default) in [("from", FROM), ("to", TO)] {

@@ -42,6 +42,8 @@ pub(crate) enum Value {
     Number(f64),
     /// Numbers in range, as many as asked for.
     Numbers(Vec<f64>),
+    /// Places in space.
+    Points(Vec<[f64; 3]>),
     /// Text.
     Text(String),
     /// One of the allowed words.

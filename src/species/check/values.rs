@@ -22,6 +22,8 @@ impl Checker<'_> {
             Kind::Sources => self.sources(node, path),
             Kind::Setting(range) => self.number(node, path, *range, false),
             Kind::Count(range) => self.number(node, path, *range, true),
+            Kind::Point(range) => self.list(node, path, 3, *range),
+            Kind::Points(most, range) => self.points(node, path, *most, *range),
             Kind::Words(choices) => self.words(node, path, choices),
             Kind::Choice(choices) => self.choice(node, path, choices),
             Kind::ChoiceOrFile(choices) => match &node.data {
@@ -194,6 +196,28 @@ impl Checker<'_> {
                 let kind = if whole { "a whole number" } else { "a number" };
                 self.wrong(node, path, &format!("{kind} from {range}"))
             }
+        }
+    }
+
+    fn points(&mut self, node: &Node, path: &str, most: usize, range: Range) -> Value {
+        let expected = format!("2 to {most} points such as [0, 0.1, -2]");
+        let Data::Array(items) = &node.data else {
+            return self.wrong(node, path, &expected);
+        };
+        if !(2..=most).contains(&items.len()) {
+            return self.wrong(node, path, &expected);
+        }
+        let mut points = Vec::new();
+        for (index, item) in items.iter().enumerate() {
+            let point = self.list(item, &format!("{path}.{index}"), 3, range);
+            if let Value::Numbers(numbers) = point {
+                points.extend(<[f64; 3]>::try_from(numbers).ok());
+            }
+        }
+        if points.len() == items.len() {
+            Value::Points(points)
+        } else {
+            Value::Refused
         }
     }
 

@@ -1,5 +1,6 @@
 //! The fields of how a hair class grows.
 
+use super::comb::COMB;
 use super::number;
 use super::vary::VARY;
 use crate::species::shape::{Field, Kind, Shape};
@@ -121,4 +122,15 @@ pub(super) static GROOM: Shape = Shape {
             "What of this is not the same everywhere; factors of several join.",
         ),
     ],
+};
+
+pub(super) static SHARED: Shape = Shape {
+    name: "shared-groom",
+    doc: "What all hair classes share in how they grow.",
+    cited: false,
+    fields: &[Field::optional(
+        "comb",
+        Kind::Table(&COMB),
+        "Lines and whorls along which hair lies, in place of the lay of the skin.",
+    )],
 };

@@ -1,5 +1,6 @@
 //! The fields of a species file.
 
+mod comb;
 mod cuticle;
 mod groom;
 mod materials;
@@ -14,7 +15,7 @@ pub(crate) use vary::{CHANNELS, MAP_CHANNEL, MAP_FILE, SPACES, VARIED, choice};
 
 use super::coat::COATS;
 use super::shape::{Field, Kind, Range, Shape};
-use groom::GROOM;
+use groom::{GROOM, SHARED};
 use structure::{STATION, STRUCTURE};
 
 /// The whole file. Beside these keys it has one [`CLASS`] table for each name in `classes`.
@@ -56,6 +57,11 @@ pub(crate) static SPECIES: Shape = Shape {
             "coat",
             Kind::ChoiceOrFile(COATS),
             "Pattern of the coat: a built-in one or the path of a recipe; one color when left out.",
+        ),
+        Field::optional(
+            "groom",
+            Kind::Table(&SHARED),
+            "What all classes share in how they grow.",
         ),
         Field::optional(
             "structure",

@@ -62,6 +62,10 @@ pub(crate) const VARIED: &[Choice] = &[
         "factor on the angle between skin and hair at the root",
     ),
     choice(
+        "comb",
+        "factor on the strength of combing curves and whorls, 0 to 1",
+    ),
+    choice(
         "turn",
         "angle by which the lay is turned about the skin's normal, counter-clockwise, degrees",
     ),

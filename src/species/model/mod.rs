@@ -1,10 +1,12 @@
 //! A validated species: plain data, every value finite and in range. Nothing after this module can
 //! meet a bad number. Lengths carry their unit in the name, angles are degrees as in the files.
 
+mod comb;
 mod mesh;
 mod structure;
 mod vary;
 
+pub use comb::*;
 pub use mesh::*;
 pub use structure::*;
 pub use vary::*;
@@ -33,6 +35,9 @@ pub struct Species {
     pub classes: Vec<HairClass>,
     /// The skin under the fur, linear reflectance 0..1.
     pub skin_color: [f64; 3],
+    /// What all classes share in how they grow.
+    #[serde(skip_serializing_if = "SharedGroom::is_plain")]
+    pub groom: SharedGroom,
     /// Which hairs have other pigment than `classes` say; `None` for a coat of one color.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coat: Option<CoatRecipe>,
@@ -127,6 +132,21 @@ impl HairClass {
         let band = self.pigment.iter().find(|band| from_tip_mm <= band.to_mm);
         // The last band has no end; a class has at least one.
         band.unwrap_or(&self.pigment[self.pigment.len() - 1])
+    }
+}
+
+/// What all hair classes share in how they grow.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SharedGroom {
+    /// Lines and whorls along which hair lies.
+    #[serde(skip_serializing_if = "Comb::is_empty")]
+    pub comb: Comb,
+}
+
+impl SharedGroom {
+    /// Whether nothing is said.
+    fn is_plain(&self) -> bool {
+        *self == Self::default()
     }
 }
 

@@ -35,13 +35,15 @@ pub enum VaryWhat {
     Frizz,
     /// Factor on the emergence angle, 0..10.
     Tilt,
+    /// Factor on the strength of combing curves and whorls, 0..1.
+    Comb,
     /// Degrees by which the lay is turned about the skin's normal, counter-clockwise, -360..360.
     Turn,
 }
 
 impl VaryWhat {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Length,
         Self::Width,
         Self::Density,
@@ -49,6 +51,7 @@ impl VaryWhat {
         Self::Clump,
         Self::Frizz,
         Self::Tilt,
+        Self::Comb,
         Self::Turn,
     ];
 }

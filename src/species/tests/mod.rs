@@ -1,5 +1,6 @@
 //! Tests of the reader and of the built-in species.
 
+mod comb;
 mod names;
 mod overrides;
 mod presets;
