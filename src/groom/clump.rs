@@ -3,6 +3,26 @@
 use crate::sampling::hash64;
 use glam::{IVec3, Vec3};
 
+/// The cells around a cell, itself being (1, 1, 1): it, those across its faces, its edges, its corners.
+const NEAREST_FIRST: [[usize; 3]; 27] = {
+    let mut cells = [[0; 3]; 27];
+    let (mut filled, mut apart) = (0, 0);
+    while apart <= 3 {
+        let mut i = 0;
+        while i < 27 {
+            let cell = [i % 3, i / 3 % 3, i / 9];
+            let same = (cell[0] == 1) as usize + (cell[1] == 1) as usize + (cell[2] == 1) as usize;
+            if same == 3 - apart {
+                cells[filled] = cell;
+                filled += 1;
+            }
+            i += 1;
+        }
+        apart += 1;
+    }
+    cells
+};
+
 /// A tuft of hair.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clump {
@@ -24,10 +44,21 @@ pub(super) struct Clumps {
 impl Clumps {
     /// The tuft that owns a point: the nearest center among those of the 27 cells around it.
     pub(super) fn at(&self, position: Vec3) -> Clump {
-        let home = (position / self.size).floor().as_ivec3();
+        let place = position / self.size;
+        let home = place.floor();
+        let within = place - home;
+        let home = home.as_ivec3();
+        // The least that a center in the cell before, the same and the next can be away along each axis.
+        let away = |x: f32| [x * x, 0.0, (1.0 - x) * (1.0 - x)];
+        let away = within.to_array().map(away);
         let mut best = (f32::INFINITY, Vec3::ZERO, 0);
-        for i in 0..27 {
-            let cell = home + IVec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        for [x, y, z] in NEAREST_FIRST {
+            let least = away[0][x] + away[1][y] + away[2][z];
+            // In cells, and with room for rounding.
+            if least * (self.size * self.size) * 0.999 > best.0 {
+                continue;
+            }
+            let cell = home + IVec3::new(x as i32 - 1, y as i32 - 1, z as i32 - 1);
             let bits = self.bits(cell);
             let center = (cell.as_vec3() + 0.5 + 0.5 * signed(bits).truncate()) * self.size;
             let distance = center.distance_squared(position);

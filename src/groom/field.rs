@@ -4,7 +4,7 @@
 //! neighbor. Coarse on purpose: hair follows the shape of the body, not its pores.
 
 use crate::skin::Skin;
-use glam::{IVec3, Vec3};
+use glam::{IVec3, Vec3, Vec4};
 
 /// Edge of a grid cell, meters: finer costs time and memory, coarser lets fur cut through legs.
 const CELL: f32 = 0.007;
@@ -27,8 +27,8 @@ pub(super) struct Field {
     lo: Vec3,
     cell: f32,
     size: IVec3,
-    /// Normal and height at each grid point; a zero normal where the skin is too far.
-    values: Vec<(Vec3, f32)>,
+    /// Normal and height at each grid point; zeros where the skin is too far.
+    values: Vec<Vec4>,
 }
 
 impl Field {
@@ -49,10 +49,10 @@ impl Field {
         let nearest = field.nearest_vertices(skin);
         field.values = (0..nearest.len())
             .map(|i| match nearest[i] {
-                NONE => (Vec3::ZERO, 0.0),
+                NONE => Vec4::ZERO,
                 v => {
                     let (p, n) = (skin.positions[v as usize], skin.normals[v as usize]);
-                    (n, (field.point(field.place(i)) - p).dot(n))
+                    n.extend((field.point(field.place(i)) - p).dot(n))
                 }
             })
             .collect();
@@ -117,30 +117,42 @@ impl Field {
     /// The skin below `p`, or `None` far from it.
     pub(super) fn above(&self, p: Vec3) -> Option<Above> {
         let q = (p - self.lo) / self.cell;
-        let home = q.floor();
-        let part = q - home;
-        let (mut normal, mut height, mut sum) = (Vec3::ZERO, 0.0, 0.0);
-        for corner in 0..8 {
-            let offset = IVec3::new(corner & 1, corner >> 1 & 1, corner >> 2);
-            let Some(index) = self.index(home.as_ivec3() + offset) else {
-                continue;
-            };
-            let (n, h) = self.values[index];
-            if n == Vec3::ZERO {
-                continue;
-            }
-            let side = |part: f32, far: i32| if far == 1 { part } else { 1.0 - part };
-            let weight = side(part.x, offset.x) * side(part.y, offset.y) * side(part.z, offset.z);
-            normal += weight * n;
-            height += weight * h;
-            sum += weight;
+        // The grid is larger than the skin by its band: beyond its outer cells nothing is known.
+        let inside = q.cmpge(Vec3::ZERO) & q.cmplt((self.size - 1).as_vec3());
+        if !inside.all() {
+            return None;
         }
-        if sum < 0.5 {
+        // Casts round down.
+        let home = q.as_ivec3();
+        let (far, near) = (q - home.as_vec3(), 1.0 - (q - home.as_vec3()));
+        let (ny, nz) = (self.size.x, self.size.x * self.size.y);
+        let first = home.x + home.y * ny + home.z * nz;
+        let (mut value, mut known) = (Vec4::ZERO, 0.0);
+        for (row, weight) in [
+            (first, near.y * near.z),
+            (first + ny, far.y * near.z),
+            (first + nz, near.y * far.z),
+            (first + ny + nz, far.y * far.z),
+        ] {
+            let row = row as usize;
+            for (corner, weight) in
+                (self.values[row..row + 2].iter()).zip([near.x * weight, far.x * weight])
+            {
+                value += weight * *corner;
+                // Normals are units.
+                known += if corner.truncate() == Vec3::ZERO {
+                    0.0
+                } else {
+                    weight
+                };
+            }
+        }
+        if known < 0.5 {
             return None;
         }
         Some(Above {
-            normal: normal.try_normalize()?,
-            height: height / sum,
+            normal: value.truncate().try_normalize()?,
+            height: value.w / known,
         })
     }
 

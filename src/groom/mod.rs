@@ -9,8 +9,12 @@ mod cover;
 mod error;
 mod field;
 mod follicle;
+mod near;
 mod noise;
 mod plan;
+mod scatter;
+#[cfg(test)]
+mod scatter_tests;
 #[cfg(test)]
 mod shape_tests;
 mod strand;
@@ -183,22 +187,23 @@ pub fn grow(
     let plan = plan::plan(skin, surface.weighted_area(), species, settings.strands)?;
     let total: usize = plan.iter().map(|c| c.strands).sum();
     progress.begin("growing fur", 2 * total as u64, "strands");
-    let scattered: Result<Vec<_>, GroomError> = plan
-        .par_iter()
-        .enumerate()
-        .map(|(class, plan)| {
-            let seed = follicle::class_seed(settings.seed, class);
-            surface.scatter(seed, plan.strands, progress, cancel)
-        })
-        .collect();
-    let scattered = scattered?;
-
-    let coat = match &species.coat {
-        Some(recipe) => Some(Coat::paint(skin, recipe, settings.seed, cancel)?),
-        None => None,
+    let scatter = || -> Result<Vec<_>, GroomError> {
+        (plan.par_iter().enumerate())
+            .map(|(class, plan)| {
+                let seed = follicle::class_seed(settings.seed, class);
+                surface.scatter(seed, plan.strands, progress, cancel)
+            })
+            .collect()
     };
+    let paint = || -> Result<Option<Coat>, GroomError> {
+        let recipe = species.coat.as_ref();
+        let coat = recipe.map(|recipe| Coat::paint(skin, recipe, settings.seed, cancel));
+        coat.transpose()
+    };
+    let field = || (skin.gravity == 0.0).then(|| Field::new(skin));
+    let (scattered, (coat, field)) = rayon::join(scatter, || (paint(), field()));
+    let (scattered, coat) = (scattered?, coat?);
     let comb = Comb::new(&species.groom.comb, skin);
-    let field = (skin.gravity == 0.0).then(|| Field::new(skin));
     let mut groom = Groom {
         classes: species.classes.iter().map(|c| c.name.clone()).collect(),
         coats: match &species.coat {
@@ -219,25 +224,18 @@ pub fn grow(
     for (class, scattered) in scattered.iter().enumerate() {
         let follicles = &scattered.follicles;
         let variation = Variation::new(&species.classes[class].groom.vary, settings.seed);
-        let root_of = |follicle: &Follicle| {
-            let mut root = surface.root(follicle);
-            root.vary = variation.at(root.position, surface.uv(follicle));
-            if let Some(comb) = &comb {
-                root.combing = comb.lay(root.position, root.normal, root.lay, root.vary.comb);
-            }
-            root
-        };
+        let vary_of = |follicle: &Follicle| variation.at(follicle.position, surface.uv(follicle));
         let diameter = species.classes[class].groom.diameter_um;
         let shortest = (diameter * 1e-3 / species.classes[class].groom.length_mm) as f32;
         let fates: Vec<Fate> = (follicles.par_iter().enumerate())
             .with_min_len(1024)
             .map(|(rank, follicle)| {
-                let root = root_of(follicle);
-                if root.length * root.vary.length <= shortest {
+                let vary = vary_of(follicle);
+                if surface.length(follicle) * vary.length <= shortest {
                     Fate::Short
-                } else if root.vary.width <= 0.0 {
+                } else if vary.width <= 0.0 {
                     Fate::Thin
-                } else if !variation.grows(id_of(class, rank), root.vary.density) {
+                } else if !variation.grows(id_of(class, rank), vary.density) {
                     Fate::Sparse
                 } else {
                     Fate::Grown
@@ -269,50 +267,64 @@ pub fn grow(
         groom.widths.resize(groom.points.len(), 0.0);
         let first = groom.normal.len();
         groom.normal.resize(first + ranks.len(), Vec3::ZERO);
+        groom.length.resize(first + ranks.len(), 0.0);
         groom.coat.resize(first + ranks.len(), 0);
         groom.points[start..]
-            .par_chunks_mut(per_strand)
-            .zip(groom.widths[start..].par_chunks_mut(per_strand))
-            .zip(groom.normal[first..].par_iter_mut())
-            .zip(groom.coat[first..].par_iter_mut())
-            .zip(ranks.par_iter().enumerate())
-            .with_min_len(1024)
-            .for_each(|((((points, widths), normal), part), (index, &rank))| {
-                if index % 1024 == 0 {
-                    progress.advance(1024.min(ranks.len() - index) as u64);
+            .par_chunks_mut(per_strand * CHUNK)
+            .zip(groom.widths[start..].par_chunks_mut(per_strand * CHUNK))
+            .zip(groom.normal[first..].par_chunks_mut(CHUNK))
+            .zip(groom.length[first..].par_chunks_mut(CHUNK))
+            .zip(groom.coat[first..].par_chunks_mut(CHUNK))
+            .zip(ranks.par_chunks(CHUNK))
+            .for_each(|(((((points, widths), normals), lengths), parts), ranks)| {
+                if cancel.is_cancelled() {
+                    return;
                 }
-                let id = id_of(class, rank as usize);
-                if !cancel.is_cancelled() {
-                    let mut root = root_of(&follicles[rank as usize]);
+                // Neighbors one after another: they need the same parts of skin and field.
+                let place = |i: &u32| follicles[ranks[*i as usize] as usize];
+                let mut near = Vec::new();
+                let mut order: Vec<u32> = (0..ranks.len() as u32).collect();
+                order.sort_unstable_by_key(|i| (surface.place(&place(i)).0, *i));
+                for i in order.into_iter().map(|i| i as usize) {
+                    let follicle = &follicles[ranks[i] as usize];
+                    let id = id_of(class, ranks[i] as usize);
+                    let mut root = surface.root(follicle);
+                    root.vary = vary_of(follicle);
+                    if let Some(comb) = &comb {
+                        root.combing =
+                            comb.lay(root.position, root.normal, root.lay, root.vary.comb);
+                    }
                     if let Some(coat) = &coat {
-                        let (zone, hair) = coat.choose(id, root.position, root.normal);
-                        *part = zone;
+                        let (zone, hair) = coat.choose(id, root.position, root.normal, &mut near);
+                        parts[i] = zone;
                         root.length *= hair;
                     }
-                    *normal = grower.grow(id, &root, points, widths);
+                    let strand = i * per_strand..(i + 1) * per_strand;
+                    let points = &mut points[strand.clone()];
+                    normals[i] = grower.grow(id, &root, points, &mut widths[strand]);
+                    lengths[i] = arc_length(points);
                 }
+                progress.advance(ranks.len() as u64);
             });
         if cancel.is_cancelled() {
             return Err(GroomError::Cancelled);
         }
-        for (index, &rank) in ranks.iter().enumerate() {
-            let follicle = &follicles[rank as usize];
-            let end = start + (index + 1) * per_strand;
-            groom.offsets.push(end as u32);
-            groom.class.push(class as u8);
-            groom.id.push(id_of(class, rank as usize));
-            groom.root_uv.push(surface.uv(follicle));
-            let (triangle, barycentric) = surface.place(follicle);
-            groom.root_triangle.push(triangle);
-            groom.root_barycentric.push(barycentric);
-            groom
-                .length
-                .push(arc_length(&groom.points[end - per_strand..end]));
-        }
+        let ends = (1..=ranks.len()).map(|i| (start + i * per_strand) as u32);
+        groom.offsets.extend(ends);
+        groom.class.resize(first + ranks.len(), class as u8);
+        let ids = ranks.iter().map(|&rank| id_of(class, rank as usize));
+        groom.id.extend(ids);
+        let grown = ranks.par_iter().map(|&rank| &follicles[rank as usize]);
+        (groom.root_uv).par_extend(grown.clone().map(|follicle| surface.uv(follicle)));
+        (groom.root_triangle).par_extend(grown.clone().map(|f| surface.place(f).0));
+        (groom.root_barycentric).par_extend(grown.map(|f| surface.place(f).1));
     }
     progress.finish();
     Ok(groom)
 }
+
+/// Strands of neighboring ranks that a thread grows.
+const CHUNK: usize = 1 << 14;
 
 /// The id of a strand.
 fn id_of(class: usize, rank: usize) -> u32 {

@@ -290,7 +290,7 @@ impl<'a> Grower<'a> {
             && above.normal.dot(root.normal) > 0.2
         {
             normal = normal.lerp(above.normal, FOLLOW).normalize_or(normal);
-            combing = Quat::from_rotation_arc(root.normal, normal) * combing;
+            combing = carried(combing, root.normal, normal);
         }
         if let Some(comb) = self.comb {
             // Hair follows a curve or whorl along its whole length.
@@ -300,9 +300,12 @@ impl<'a> Grower<'a> {
         }
         let downhill = normal * normal.y - Vec3::Y;
         let lay = (combing + SAG * middle * downhill).normalize_or(combing);
-        let direction = lay * angle.cos() + normal * angle.sin();
-        let hang = self.gravity * (1.0 - (-(middle * length / HANG).powi(2)).exp());
-        let direction = direction.lerp(Vec3::NEG_Y, hang).normalize_or(direction);
+        let (sin, cos) = angle.sin_cos();
+        let mut direction = lay * cos + normal * sin;
+        if self.gravity > 0.0 {
+            let hang = self.gravity * (1.0 - (-(middle * length / HANG).powi(2)).exp());
+            direction = direction.lerp(Vec3::NEG_Y, hang).normalize_or(direction);
+        }
         from + direction * (length * (zetas[1] - zetas[0]))
     }
 
@@ -428,6 +431,13 @@ impl Frizz {
         };
         (self.across[0] * wave(0) + self.across[1] * wave(1)) * (self.amplitude * zeta)
     }
+}
+
+/// A tangent turned with its normal, the shortest way.
+///
+/// * `from`, `to`: unit, not opposite. * `tangent`: across `from`.
+fn carried(tangent: Vec3, from: Vec3, to: Vec3) -> Vec3 {
+    tangent - (from + to) * (tangent.dot(to) / (1.0 + from.dot(to)))
 }
 
 /// Share of the clump's pull at `zeta`, 0 at the root and 1 at the tip.

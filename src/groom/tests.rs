@@ -142,7 +142,7 @@ fn same_bytes_for_any_number_of_threads() {
 }
 
 /// Distance of each root to its nearest neighbor of the same class.
-fn nearest_distances(roots: &[Vec3], reach: f32) -> Vec<f32> {
+pub(super) fn nearest_distances(roots: &[Vec3], reach: f32) -> Vec<f32> {
     let cell = |p: Vec3| (p / reach).floor().as_ivec3();
     let mut grid: HashMap<glam::IVec3, Vec<usize>> = HashMap::new();
     for (i, p) in roots.iter().enumerate() {

@@ -1,5 +1,6 @@
-//! Frames, turns, exponentials, steps, unit vectors in 32 bits, the unicube map and Fresnel equations.
+//! Maps of cells, frames, turns, exponentials, steps, unit vectors in 32 bits, the unicube map and Fresnel equations.
 
+pub(crate) mod cells;
 pub mod decay;
 pub mod ease;
 pub mod frame;

@@ -1,11 +1,14 @@
 //! From a signed distance to a triangle mesh: naive surface nets (Gibson 1998) on a sparse grid.
 
+use crate::math::cells::CellMap;
 use glam::{IVec3, Vec3};
 use rayon::prelude::*;
-use std::collections::HashMap;
 
 /// Cells along the edge of a block; blocks far from the surface are skipped.
 const BLOCK: i32 = 8;
+
+/// Cells along the edge of the parts of a block; in parts far from the surface nothing is looked at closely.
+const PART: i32 = 2;
 
 /// Vertices on the zero set of `distance` and triangles, counter-clockwise seen from outside
 /// (where `distance` is positive).
@@ -20,7 +23,7 @@ pub(super) fn mesh(
     distance: impl Fn(Vec3) -> f32 + Sync,
 ) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let blocks = ((hi - lo) / (cell * BLOCK as f32)).ceil().as_ivec3();
-    let reach = 0.5 * 3f32.sqrt() * cell * (BLOCK + 1) as f32 * 1.33;
+    let reach = reach(BLOCK + 1, cell);
     let near: Vec<IVec3> = (0..blocks.x * blocks.y * blocks.z)
         .into_par_iter()
         .map(|i| {
@@ -38,11 +41,11 @@ pub(super) fn mesh(
     let at = |corner: IVec3| lo + corner.as_vec3() * cell;
     let parts: Vec<BlockNet> = near
         .par_iter()
-        .map(|block| block_net(*block * BLOCK, &at, &distance))
+        .map(|block| block_net(*block * BLOCK, cell, &at, &distance))
         .collect();
 
     let mut vertices = Vec::new();
-    let mut index = HashMap::new();
+    let mut index = CellMap::default();
     for (cell, vertex) in parts.iter().flat_map(|p| &p.vertices) {
         index.insert(*cell, vertices.len() as u32);
         vertices.push(*vertex);
@@ -65,6 +68,53 @@ pub(super) fn mesh(
     (vertices, triangles)
 }
 
+/// The surface does not come into a cube of `cells` cells if its distance from the middle is as large.
+fn reach(cells: i32, cell: f32) -> f32 {
+    0.5 * 3f32.sqrt() * cell * cells as f32 * 1.34
+}
+
+/// Distances at the corners of the cells of a block, the first corner being `first`. Where the surface is far
+/// only their sign is right.
+fn corner_values(
+    first: IVec3,
+    cell: f32,
+    at: &(impl Fn(IVec3) -> Vec3 + Sync),
+    distance: &(impl Fn(Vec3) -> f32 + Sync),
+) -> Vec<f32> {
+    let side = BLOCK + 1;
+    let mut values = vec![f32::NAN; (side * side * side) as usize];
+    let parts = BLOCK / PART;
+    let mut far = Vec::new();
+    for i in 0..parts * parts * parts {
+        let part = PART * IVec3::new(i % parts, i / parts % parts, i / parts / parts);
+        let middle = 0.5 * (at(first + part) + at(first + part + PART));
+        let there = distance(middle);
+        let corners = (0..(PART + 1) * (PART + 1) * (PART + 1)).map(|k| {
+            let n = PART + 1;
+            let corner = part + IVec3::new(k % n, k / n % n, k / n / n);
+            (
+                corner,
+                (corner.x + side * (corner.y + side * corner.z)) as usize,
+            )
+        });
+        if there.abs() >= reach(PART, cell) {
+            far.extend(corners.map(|(_, index)| (index, there)));
+            continue;
+        }
+        for (corner, index) in corners {
+            if values[index].is_nan() {
+                values[index] = distance(at(first + corner));
+            }
+        }
+    }
+    for (index, there) in far {
+        if values[index].is_nan() {
+            values[index] = there;
+        }
+    }
+    values
+}
+
 /// One block's share of the net: a vertex in each cell that the surface crosses, a quad of cells
 /// round each crossed edge.
 struct BlockNet {
@@ -74,14 +124,12 @@ struct BlockNet {
 
 fn block_net(
     first: IVec3,
+    cell: f32,
     at: &(impl Fn(IVec3) -> Vec3 + Sync),
     distance: &(impl Fn(Vec3) -> f32 + Sync),
 ) -> BlockNet {
     let side = BLOCK + 1;
-    let corner = |i: i32| IVec3::new(i % side, i / side % side, i / side / side);
-    let values: Vec<f32> = (0..side * side * side)
-        .map(|i| distance(at(first + corner(i))))
-        .collect();
+    let values = corner_values(first, cell, at, distance);
     let value = |c: IVec3| values[(c.x + side * (c.y + side * c.z)) as usize];
     let mut net = BlockNet {
         vertices: Vec::new(),
@@ -118,4 +166,43 @@ fn block_net(
         }
     }
     net
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bone: what is far from it is known by its sign, what is near by its value.
+    #[test]
+    fn what_is_skipped_is_on_one_side() {
+        let distance = |p: Vec3| {
+            let along = p.x.clamp(-0.6, 0.6);
+            (p - Vec3::X * along).length() - 0.2 - 0.1 * along * along
+        };
+        let cell = 0.03;
+        let at = |corner: IVec3| Vec3::splat(-1.0) + corner.as_vec3() * cell;
+        let side = BLOCK + 1;
+        let (mut skipped, mut crossed) = (0, 0);
+        for block in 0..512 {
+            let first = IVec3::new(block % 8, block / 8 % 8, block / 64) * BLOCK;
+            let values = corner_values(first, cell, &at, &distance);
+            let place = |i: i32| IVec3::new(i % side, i / side % side, i / side / side);
+            let true_at = |corner: IVec3| distance(at(first + corner));
+            for i in 0..side * side * side {
+                let (value, exact) = (values[i as usize], true_at(place(i)));
+                skipped += i32::from(value != exact);
+                assert_eq!(value < 0.0, exact < 0.0, "{first} {}", place(i));
+                let around = [IVec3::X, IVec3::Y, IVec3::Z].map(|axis| place(i) + axis);
+                let inside = |c: &IVec3| c.max_element() < side;
+                if around
+                    .iter()
+                    .any(|c| inside(c) && (true_at(*c) < 0.0) != (exact < 0.0))
+                {
+                    crossed += 1;
+                    assert_eq!(value, exact, "{first} {}", place(i));
+                }
+            }
+        }
+        assert!(skipped > 100_000 && crossed > 1_000, "{skipped} {crossed}");
+    }
 }

@@ -94,10 +94,11 @@ impl Coat {
         let tints: Vec<Vec3> = (0..pigments.len())
             .map(|zone| if zone == 0 { Vec3::ONE } else { deep(zone) })
             .collect();
-        let at = |i: usize| {
+        let at = |near: &mut Vec<(u32, f32)>, i: usize| {
             let mut sum = Vec3::ZERO;
             let mut all = 0.0;
-            for (point, weight) in self.net.weights(skin.positions[i], skin.normals[i]) {
+            self.net.weights(skin.positions[i], skin.normals[i], near);
+            for &(point, weight) in near.iter() {
                 for (tint, share) in tints.iter().zip(&self.shares[point as usize]) {
                     sum += *tint * (weight * share);
                     all += weight * share;
@@ -105,15 +106,23 @@ impl Coat {
             }
             if all > 0.0 { sum / all } else { Vec3::ONE }
         };
-        (0..skin.positions.len()).into_par_iter().map(at).collect()
+        let vertices = (0..skin.positions.len()).into_par_iter();
+        vertices.map_with(Vec::new(), at).collect()
     }
 
     /// The zone of a hair, and the factor on its length.
     ///
-    /// * `id`: of the strand, the same for any density.
-    pub(super) fn choose(&self, id: u32, position: Vec3, normal: Vec3) -> (u8, f32) {
+    /// * `id`: of the strand, the same for any density. * `near`: memory to be used.
+    pub(super) fn choose(
+        &self,
+        id: u32,
+        position: Vec3,
+        normal: Vec3,
+        near: &mut Vec<(u32, f32)>,
+    ) -> (u8, f32) {
         let mut shares = [0.0; MAX_ZONES + 1];
-        for (point, weight) in self.net.weights(position, normal) {
+        self.net.weights(position, normal, near);
+        for &(point, weight) in near.iter() {
             for (sum, share) in shares.iter_mut().zip(&self.shares[point as usize]) {
                 *sum += weight * share;
             }

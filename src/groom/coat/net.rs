@@ -1,10 +1,11 @@
 //! The skin as a net of evenly spread points: what patterns live on, whatever the triangles are like.
 
 use crate::groom::follicle::{Follicle, Surface};
+use crate::math::cells::CellMap;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap};
+use std::collections::BinaryHeap;
 
 /// Neighbors are this many spacings apart at most: some sixteen of them.
 const REACH: f32 = 2.1;
@@ -25,7 +26,7 @@ pub(super) struct Net {
     /// Neighbors of point `i`: `neighbors[first[i]..first[i + 1]]`.
     first: Vec<u32>,
     neighbors: Vec<u32>,
-    cells: HashMap<[i32; 3], Vec<u32>>,
+    cells: CellMap<[i32; 3], Vec<u32>>,
 }
 
 impl Net {
@@ -41,7 +42,7 @@ impl Net {
             spacing,
             first: vec![0],
             neighbors: Vec::new(),
-            cells: HashMap::new(),
+            cells: CellMap::default(),
         };
         for (i, p) in net.positions.iter().enumerate() {
             let cell = net.cell_of(*p);
@@ -112,9 +113,9 @@ impl Net {
         (0..self.len())
             .into_par_iter()
             .with_min_len(256)
-            .map(|i| {
+            .map_with(Vec::new(), |near, i| {
                 let (p, n) = (self.positions[i], self.normals[i]);
-                let near = coarse.weights(p, n);
+                coarse.weights(p, n, near);
                 if near.is_empty() {
                     return coarse.nearest(p).map_or(0.0, |j| values[j]);
                 }
@@ -125,25 +126,22 @@ impl Net {
 
     /// Points around a hair's root on its side of the skin, with weights that sum to 1; none far from
     /// all points.
-    pub(super) fn weights(&self, position: Vec3, normal: Vec3) -> Vec<(u32, f32)> {
+    pub(super) fn weights(&self, position: Vec3, normal: Vec3, found: &mut Vec<(u32, f32)>) {
         let reach = LOOK * self.spacing;
         let weight = |j: u32| {
             let far = self.positions[j as usize].distance_squared(position);
             let facing = (self.normals[j as usize].dot(normal) - SAME_SIDE).max(0.0);
             facing * (-far / (0.5 * self.spacing * self.spacing)).exp()
         };
-        let mut found: Vec<(u32, f32)> = self
-            .around(position, reach)
-            .map(|j| (j, weight(j)))
-            .collect();
+        found.clear();
+        found.extend(self.around(position, reach).map(|j| (j, weight(j))));
         let sum: f32 = found.iter().map(|(_, w)| w).sum();
         if sum <= 0.0 {
-            return Vec::new();
+            found.clear();
         }
-        for (_, w) in &mut found {
+        for (_, w) in found {
             *w /= sum;
         }
-        found
     }
 
     /// Length of the way along the skin from the nearest of some places to each point, meters

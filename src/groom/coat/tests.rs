@@ -63,7 +63,8 @@ fn stripes_have_their_wavelength_and_direction() {
             let near = coat.net.nearest(p).unwrap();
             let (at, normal) = (coat.net.positions[near], coat.net.normals[near]);
             let p = p - normal * (p - at).dot(normal);
-            let weights = coat.net.weights(p, normal);
+            let mut weights = Vec::new();
+            coat.net.weights(p, normal, &mut weights);
             let share = |&(i, w): &(u32, f32)| w * coat.shares[i as usize][1];
             weights.iter().map(share).sum::<f32>() > 0.5
         };
