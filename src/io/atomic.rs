@@ -64,7 +64,7 @@ impl AtomicFile {
         stale::claim(temp.as_file());
         Ok(Self {
             path: path.to_owned(),
-            file: BufWriter::with_capacity(1 << 20, temp),
+            file: BufWriter::with_capacity(1 << 16, temp),
         })
     }
 

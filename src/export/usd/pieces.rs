@@ -5,10 +5,16 @@ use rayon::prelude::*;
 use std::io::{self, Write};
 
 /// Rows a piece: some hundred kilobytes of points.
-const ROWS: usize = 4096;
+const ROWS: usize = 2048;
 
-/// Pieces that are in memory at once.
+/// Pieces that are written one after another while as many are made.
 const AT_ONCE: usize = 16;
+
+/// Memory of a piece, used again for one after another.
+struct Piece<T> {
+    elements: Vec<T>,
+    bytes: Vec<u8>,
+}
 
 /// Writes an array: every piece is turned into bytes on any thread.
 ///
@@ -21,24 +27,36 @@ pub(super) fn write<T: Send>(
     wrote: &mut dyn FnMut(u64) -> io::Result<()>,
 ) -> io::Result<()> {
     let pieces = rows.rows().div_ceil(ROWS);
-    for batch in (0..pieces).step_by(AT_ONCE) {
-        let encoded: Vec<Vec<u8>> = (batch..(batch + AT_ONCE).min(pieces))
-            .into_par_iter()
-            .map(|piece| {
-                let start = piece * ROWS;
-                let mut elements = Vec::new();
-                rows.fill(start..(start + ROWS).min(rows.rows()), &mut elements);
-                let mut bytes = Vec::new();
-                encode(&elements, piece == 0, &mut bytes);
-                bytes
-            })
-            .collect();
-        let mut count = 0;
-        for bytes in &encoded {
-            out.write_all(bytes)?;
-            count += bytes.len() as u64;
-        }
-        wrote(count)?;
+    let make = |batch: &mut Vec<Piece<T>>, first: usize| {
+        batch.resize_with(AT_ONCE.min(pieces - first), || Piece {
+            elements: Vec::new(),
+            bytes: Vec::new(),
+        });
+        batch.par_iter_mut().enumerate().for_each(|(i, piece)| {
+            let start = (first + i) * ROWS;
+            piece.elements.clear();
+            piece.bytes.clear();
+            rows.fill(start..(start + ROWS).min(rows.rows()), &mut piece.elements);
+            encode(&piece.elements, start == 0, &mut piece.bytes);
+        });
+    };
+    let (mut ready, mut coming) = (Vec::new(), Vec::new());
+    make(&mut ready, 0);
+    for first in (0..pieces).step_by(AT_ONCE) {
+        rayon::in_place_scope(|scope| {
+            let next = first + AT_ONCE;
+            if next < pieces {
+                let coming = &mut coming;
+                scope.spawn(move |_| make(coming, next));
+            }
+            let mut count = 0;
+            for piece in &ready {
+                out.write_all(&piece.bytes)?;
+                count += piece.bytes.len() as u64;
+            }
+            wrote(count)
+        })?;
+        std::mem::swap(&mut ready, &mut coming);
     }
     Ok(())
 }
