@@ -302,3 +302,7 @@ pub(super) fn check_limits(all: &[Curves<'_>], findings: &mut Findings<'_>) {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "curves_tests.rs"]
+mod tests;

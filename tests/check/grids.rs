@@ -38,6 +38,10 @@ def Xform "grids" (
 
 /// Fog where the strands of the sound file are.
 pub(super) fn fog(values: [f32; 2], voxel: f64, half: bool) -> Vec<u8> {
+    stored(values, voxel, half, Compression::Zip)
+}
+
+fn stored(values: [f32; 2], voxel: f64, half: bool, how: Compression) -> Vec<u8> {
     let leaf = |origin: [i32; 3], at: [i32; 3], value| {
         let mut leaf = Leaf::new(IVec3::from(origin), 0.0f32);
         leaf.set(IVec3::from(at), value);
@@ -55,7 +59,7 @@ pub(super) fn fog(values: [f32; 2], voxel: f64, half: bool) -> Vec<u8> {
         metadata: Vec::new(),
         tree: Tree::new(0.0, leaves, Vec::new()).unwrap(),
     };
-    let mut writer = Writer::new(Cursor::new(Vec::new()), Compression::Zip, "test").unwrap();
+    let mut writer = Writer::new(Cursor::new(Vec::new()), how, "test").unwrap();
     writer.grid(&grid).unwrap();
     writer.finish().unwrap().into_inner()
 }
@@ -135,6 +139,9 @@ fn sound_grids_are_clean() {
 #[test]
 fn c13_grids() {
     only(&in_grids(&fog([1.0, -2.0], 0.01, false)), Rule::C13, Error);
+    let plain = stored([1.0, 1234.5], 0.01, false, Compression::None);
+    let bad = patched(&plain, &1234.5f32.to_le_bytes(), &f32::NAN.to_le_bytes());
+    only(&in_grids(&bad), Rule::C03, Error);
     let mut old = sound();
     old[8] = 219;
     only(&in_grids(&old), Rule::C13, Error);
@@ -161,6 +168,18 @@ fn c13_grids() {
         )),
         Rule::C13,
         Error,
+    );
+    // A box that is not that of the voxels: its number stands behind two words and two lengths.
+    let mut other = sound();
+    let name = b"file_bbox_min";
+    let at = other.windows(name.len()).position(|w| w == name).unwrap();
+    other[at + name.len() + 13] ^= 1;
+    only(&in_grids(&other), Rule::C13, Error);
+    // What is no fog may be below zero.
+    let signed = fog([1.0, -2.0], 0.01, false);
+    assert_eq!(
+        in_grids(&patched(&signed, b"fog volume", b"level sets")),
+        []
     );
     // Grids of one volume in two files.
     let two = VOLUME.replace(
@@ -192,6 +211,11 @@ fn c14_fields() {
         );
     }
     only(&in_volume("\"float\"", "\"float3\""), Rule::C14, Error);
+    only(
+        &in_volume("            asset filePath = @./fur.vdb@\n", ""),
+        Rule::C14,
+        Error,
+    );
     only(
         &in_volume("\"fogVolume\"", "\"levelSet\""),
         Rule::C14,
@@ -238,6 +262,20 @@ fn c15_packages() {
     only(&pack(&[fur, ("fur.vdb", &sound())], 0), Rule::C15, Error);
     only(&pack(&[fur], 1), Rule::C15, Error);
     only(&found(FUR, &[Consumer::Ar]), Rule::C15, Error);
+    let volume = [("fur.vdb", &sound()[..]), ("grids.usda", VOLUME.as_bytes())];
+    only(
+        &in_files(&volume, &["grids.usda"], &[Consumer::Ar]),
+        Rule::C15,
+        Error,
+    );
+    // What is deflated cannot be looked into, but that is said.
+    let mut deflated = package(&[fur], 0);
+    deflated[8] = 8;
+    only(
+        &in_files(&[("fur.usdz", &deflated)], &["fur.usdz"], &[]),
+        Rule::C15,
+        Error,
+    );
 }
 
 #[test]
@@ -252,7 +290,9 @@ fn c20_frames() {
     };
     // Grids in centimeters under a layer in meters, and the layer in centimeters under grids in meters.
     let in_cm = fog([1.0, 2.0], 1.0, false);
-    only(&with(&in_cm, VOLUME), Rule::C20, Error);
+    let all = with(&in_cm, VOLUME);
+    only(&all, Rule::C20, Error);
+    assert!(all[0].message.contains("times as large"), "{all:?}");
     let in_cm = VOLUME.replace("metersPerUnit = 1", "metersPerUnit = 0.01");
     only(&with(&sound(), &in_cm), Rule::C20, Error);
     // The same numbers with another axis up: fur that lies elsewhere.
@@ -267,6 +307,56 @@ fn c20_frames() {
         Rule::C20,
         Error,
     );
+}
+
+#[test]
+fn c20_boxes() {
+    // A sixth of their room in common.
+    let large = fog([1.0, 2.0], 0.013, false);
+    let files: [(&str, &[u8]); 2] = [("fur.usda", FUR.as_bytes()), ("fur.vdb", &large)];
+    only(
+        &in_files(&files, &["fur.usda", "fur.vdb"], &[]),
+        Rule::C20,
+        Warning,
+    );
+    // The extent of the volume that shows the grids.
+    let far = "[(5.245, -0.005, 0.245), (5.505, 0.025, 0.755)]";
+    let near = "[(0.245, -0.005, 0.245), (0.505, 0.025, 0.755)]";
+    only(&in_volume(near, far), Rule::C20, Error);
+    assert_eq!(
+        in_volume("extent = [(0.245", "extend = [(0.245")[0].rule,
+        Rule::C11
+    );
+    // Grids that are moved are left out.
+    let moved = VOLUME.replace(
+        "        rel field",
+        "        uniform token[] xformOpOrder = [\"xformOp:scale\"]\n        rel field",
+    );
+    let files: [(&str, &[u8]); 3] = [
+        ("fur.usda", FUR.as_bytes()),
+        ("fur.vdb", &fog([1.0, 2.0], 1.0, false)),
+        ("grids.usda", moved.as_bytes()),
+    ];
+    assert_eq!(in_files(&files, &["fur.usda", "grids.usda"], &[]), []);
+}
+
+/// Grids that cannot be looked at are a note that says why.
+#[test]
+fn c13_unread_grids() {
+    let noted = |at: usize, value: u8| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("fur.vdb");
+        let mut bytes = sound();
+        bytes[at] = value;
+        fs::write(&path, bytes).unwrap();
+        let all = check(&[path], &CheckSettings::default()).findings;
+        let notes = all.into_iter().filter(|f| f.severity == Note);
+        notes.map(|f| f.message).collect::<String>()
+    };
+    assert_eq!(noted(8, 224), "");
+    assert!(noted(8, 221).contains("version 221"));
+    // Whether the file says where its grids are.
+    assert!(noted(20, 0).contains("as a stream"));
 }
 
 #[test]

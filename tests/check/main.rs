@@ -7,6 +7,7 @@ mod command;
 mod files;
 mod grids;
 mod hair;
+mod more;
 
 use Severity::{Error, Warning};
 use std::fs;
@@ -79,7 +80,9 @@ fn c01_widths() {
     assert_eq!(few.prim, "/fox/geo/render/guard");
     let uniform = plant(Error, &with("0.0001, 0.0001, 0.0001", "uniform"));
     assert_eq!(uniform.consumers, [Consumer::Blender]);
-    plant(Error, &with(all, "varying"));
+    let varying = plant(Error, &with(all, "varying"));
+    let refusing = [Consumer::Cycles, Consumer::Unreal, Consumer::Storm];
+    assert_eq!(varying.consumers, refusing);
     plant(
         Error,
         &with(&all.replacen("0.0001", "-0.0001", 1), "vertex"),
