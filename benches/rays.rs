@@ -23,6 +23,7 @@ fn main() -> Result<(), SceneError> {
         materials: vec![HairMaterial::Isotropic(Rgb::ONE)],
         skin: None,
         environment: Environment::white(),
+        lamps: &[],
         backdrop: Backdrop::default(),
         ground: None,
         view: View::default(),

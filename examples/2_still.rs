@@ -41,6 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         materials,
         skin: Some((&ball, bear.skin_color.map(|c| c as f32).into())),
         environment: Environment::studio().turned(view.yaw_deg),
+        lamps: &[],
         backdrop: Backdrop::default(),
         ground: None,
         view,

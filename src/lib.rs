@@ -38,6 +38,7 @@ pub mod progress;
 pub mod render;
 pub mod sampling;
 pub mod scene;
+pub mod scene_file;
 pub mod skin;
 pub mod species;
 pub mod table;

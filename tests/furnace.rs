@@ -59,6 +59,7 @@ fn world_of(species: &species::Species, materials: Vec<HairMaterial>) -> Scene {
         materials,
         skin: None,
         environment: Environment::white(),
+        lamps: &[],
         backdrop: Backdrop::Environment,
         ground: None,
         view: View::default(),

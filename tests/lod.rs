@@ -50,6 +50,7 @@ fn coverage(groom: &Groom, skin: &Skin) -> f64 {
         materials: vec![HairMaterial::Isotropic(Vec3::ZERO); groom.classes.len()],
         skin: Some((skin, Vec3::ONE)),
         environment: Environment::white(),
+        lamps: &[],
         backdrop: Backdrop::Environment,
         ground: None,
         view,

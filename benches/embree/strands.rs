@@ -103,6 +103,7 @@ fn scene(species: &str, strands: usize) -> Result<Scene, Failure> {
         materials: vec![HairMaterial::Isotropic(Rgb::ONE); groom.classes.len()],
         skin: None,
         environment: Environment::white(),
+        lamps: &[],
         backdrop: Backdrop::default(),
         ground: None,
         view: View::default(),

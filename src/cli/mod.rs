@@ -128,6 +128,11 @@ fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
     }
 }
 
+/// The choice of an option by its name.
+fn named<T: clap::ValueEnum>(name: &str) -> Option<T> {
+    T::from_str(name, true).ok()
+}
+
 /// Runs `work` on a pool of so many threads, or on all cores.
 fn with_threads<T: Send>(
     threads: Option<usize>,

@@ -11,6 +11,7 @@ use crate::species;
   vair schema species > species.schema.json
   vair schema pattern > pattern.schema.json
   vair schema coat > coat.schema.json
+  vair schema scene > scene.schema.json
   vair schema check > check.schema.json")]
 pub(super) struct Args {
     /// Which files.
@@ -26,6 +27,8 @@ enum Format {
     Pattern,
     /// Recipes of coats.
     Coat,
+    /// Scenes for `vair render`.
+    Scene,
     /// What `vair check --json` prints.
     Check,
 }
@@ -39,6 +42,7 @@ pub(super) fn run(args: &Args, _console: &Console) -> Result<(), Failure> {
         Format::Species => species::json_schema(),
         Format::Pattern => species::pattern_schema(),
         Format::Coat => species::coat_schema(),
+        Format::Scene => species::scene_schema(),
         Format::Check => check::json_schema(),
     };
     print_json(&schema)

@@ -59,6 +59,7 @@ pub(super) fn draw(
         materials,
         skin: Some((&skin, color)),
         environment: Environment::studio().turned(view.yaw_deg),
+        lamps: &[],
         backdrop: Backdrop::Plain(BACKDROP),
         ground: model.ground,
         view,

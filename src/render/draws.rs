@@ -17,6 +17,8 @@ pub(super) enum Purpose {
     Continue = 5,
     /// Place on the lens.
     Lens = 6,
+    /// Lamp, and place on it.
+    Lamp = 7,
 }
 
 /// The numbers of sample `index` of one pixel.

@@ -198,4 +198,6 @@ impl RenderJob {
 }
 
 #[cfg(test)]
+mod lamp_tests;
+#[cfg(test)]
 mod tests;

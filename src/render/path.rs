@@ -6,7 +6,7 @@ use super::resample::{Plan, Target, resample};
 use super::scatter::{Direction, Scatter};
 use super::{Filter, Sampler};
 use crate::color::Rgb;
-use crate::scene::{Camera, Ground, Hit, Scene};
+use crate::scene::{Camera, Ground, Hit, LampChoice, Scene};
 use glam::{Vec2, Vec3};
 
 /// Scattering events before roulette may end a path. At 1 dark fur pays more in noise than it saves,
@@ -108,7 +108,8 @@ impl Integrator<'_> {
             if share > 0.0 {
                 // Times the share of its light that the subject leaves to the floor.
                 let light = self.trace(&scatter, Some(ground), &draws, &mut out);
-                let left = light / ground.open().max(Rgb::splat(f32::MIN_POSITIVE));
+                let open = self.scene.open_floor(ground, scatter.position());
+                let left = light / open.max(Rgb::splat(f32::MIN_POSITIVE));
                 out.radiance *= Rgb::ONE.lerp(left, share);
             }
             return out;
@@ -140,6 +141,11 @@ impl Integrator<'_> {
                     Some(floor) if depth == 0 => self.floor_light(floor, scatter, draws, out),
                     _ => self.direct(scatter, draws, depth, out),
                 };
+            let on_floor = floor.is_some() && depth == 0;
+            let lamps = self.lamps_from(scatter);
+            if let Some(lamps) = &lamps {
+                sum += throughput * self.lamp_light(lamps, scatter, draws, depth, on_floor, out);
+            }
             let Some(direction) = self.continue_from(scatter, draws, depth) else {
                 return sum;
             };
@@ -153,8 +159,14 @@ impl Integrator<'_> {
             }
             let (ray, leaving) = scatter.leave(direction.dir);
             out.rays += 1;
-            let Some(hit) = self.scene.closest(&ray, leaving) else {
-                if floor.is_some() && depth == 0 {
+            let hit = self.scene.closest(&ray, leaving);
+            if let Some(lamps) = &lamps {
+                let far = hit.as_ref().map_or(f32::INFINITY, Hit::distance);
+                let share = |pdf| self.lamp_shares(on_floor, pdf, direction.pdf)[1];
+                sum += throughput * lamps.met(&ray, far, share);
+            }
+            let Some(hit) = hit else {
+                if on_floor {
                     return sum;
                 }
                 let (light, light_pdf) = environment.eval(ray.dir);
@@ -188,7 +200,7 @@ impl Integrator<'_> {
         if self.bare_target {
             return Target::DIRECT;
         }
-        Target::all(&self.scene.environment, depth)
+        Target::all(self.scene.mean_light(), depth)
     }
 
     /// Light straight from the environment.
@@ -216,7 +228,46 @@ impl Integrator<'_> {
                 (light.dir, density * light.radiance * (share / light.pdf))
             }
         };
-        self.unless_occluded(scatter, dir, weight, out)
+        self.unless_occluded(scatter, dir, f32::INFINITY, weight, out)
+    }
+
+    /// The lamps from a scattering point; `None` if there are none.
+    fn lamps_from(&self, scatter: &Scatter<'_>) -> Option<LampChoice<'_>> {
+        let lamps = &self.scene.lamps;
+        (!lamps.is_empty()).then(|| LampChoice::new(lamps, scatter.position()))
+    }
+
+    /// Light straight from a lamp.
+    fn lamp_light(
+        &self,
+        lamps: &LampChoice<'_>,
+        scatter: &Scatter<'_>,
+        draws: &Draws,
+        depth: u32,
+        on_floor: bool,
+        out: &mut Sample,
+    ) -> Rgb {
+        let u = draws.point(depth, Purpose::Lamp);
+        let Some(lamp) = lamps.sample([u[0], u[1], u[2]]) else {
+            return Rgb::ZERO;
+        };
+        let (density, scatter_pdf) = scatter.eval(lamp.dir);
+        let [share, _] = self.lamp_shares(on_floor, lamp.pdf, scatter_pdf);
+        let light = density * lamp.radiance * (share / lamp.pdf);
+        self.unless_occluded(scatter, lamp.dir, lamp.distance, light, out)
+    }
+
+    /// How much of the light of lamps the rays that are sent to them bring, and how much of it the continuing
+    /// rays that meet them. Where continuing rays are resampled their density is not known.
+    fn lamp_shares(&self, on_floor: bool, lamp_pdf: f32, scatter_pdf: f32) -> [f32; 2] {
+        match self.sampler {
+            _ if on_floor => [1.0, 0.0],
+            Sampler::Bsdf => [0.0, 1.0],
+            Sampler::Env | Sampler::QsirOneRay => [1.0, 0.0],
+            Sampler::Qsir | Sampler::Mis => {
+                [power(lamp_pdf, scatter_pdf), power(scatter_pdf, lamp_pdf)]
+            }
+        }
     }
 
     /// Light straight from the environment to white paint on the floor, which has no other noise
@@ -230,7 +281,7 @@ impl Integrator<'_> {
     ) -> Rgb {
         let u = draws.point(0, Purpose::Light);
         match floor.sample(&self.scene.environment, [u[0], u[1]]) {
-            Some((dir, light)) => self.unless_occluded(scatter, dir, light, out),
+            Some((dir, light)) => self.unless_occluded(scatter, dir, f32::INFINITY, light, out),
             None => Rgb::ZERO,
         }
     }
@@ -239,6 +290,7 @@ impl Integrator<'_> {
         &self,
         scatter: &Scatter<'_>,
         dir: Vec3,
+        far: f32,
         light: Rgb,
         out: &mut Sample,
     ) -> Rgb {
@@ -247,7 +299,7 @@ impl Integrator<'_> {
         }
         let (ray, leaving) = scatter.leave(dir);
         out.rays += 1;
-        if self.scene.occluded(&ray, leaving) {
+        if self.scene.occluded(&ray, far, leaving) {
             Rgb::ZERO
         } else {
             light

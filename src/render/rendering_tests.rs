@@ -19,6 +19,7 @@ fn fur() -> Scene {
         materials: vec![HairMaterial::Isotropic(Rgb::new(0.8, 0.6, 0.3)); 2],
         skin: None,
         environment: light,
+        lamps: &[],
         backdrop: Backdrop::default(),
         ground: Some(0.5),
         view: View::default(),

@@ -99,15 +99,15 @@ impl Target {
         indirect: 0.0,
     };
 
-    /// Environment and other strands.
+    /// Environment, and other strands that all light falls on.
     ///
-    /// * `depth`: scattering events before this one. The chance to escape falls as paths go deeper;
+    /// * `mean`: radiance over all directions. * `depth`: scattering events before this one. The chance to escape falls as paths go deeper;
     ///   any value in (0, 1) is unbiased. At 0.9 dark directions come with large weights and noise
     ///   doubles, below 0.2 bright lamps are missed.
-    pub(super) fn all(environment: &Environment, depth: u32) -> Self {
+    pub(super) fn all(mean: Rgb, depth: u32) -> Self {
         Self {
             escape: 0.5 * 0.8f32.powi(depth.min(10) as i32),
-            indirect: TYPICAL_ALBEDO * luminance(environment.mean()),
+            indirect: TYPICAL_ALBEDO * luminance(mean),
         }
     }
 

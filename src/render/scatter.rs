@@ -154,6 +154,11 @@ impl<'a> Scatter<'a> {
         }
     }
 
+    /// Where it is.
+    pub(super) fn position(&self) -> Vec3 {
+        self.position
+    }
+
     /// Share of even light that is scattered toward the viewer.
     pub(super) fn albedo(&self) -> Rgb {
         match &self.kind {

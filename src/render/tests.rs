@@ -53,6 +53,7 @@ pub(super) fn scene(
         materials: vec![HairMaterial::Isotropic(albedo)],
         skin: None,
         environment,
+        lamps: &[],
         backdrop,
         ground: None,
         view: View::default(),
@@ -78,7 +79,7 @@ fn straight(width_um: f32) -> Groom {
     }
 }
 
-fn render(scene: &Scene, side: u32, spp: u32, sampler: Sampler) -> Film {
+pub(super) fn render(scene: &Scene, side: u32, spp: u32, sampler: Sampler) -> Film {
     let job = RenderJob {
         resolution: [side, side],
         spp,
@@ -90,7 +91,7 @@ fn render(scene: &Scene, side: u32, spp: u32, sampler: Sampler) -> Film {
 
 /// Mean luminance of a picture and its standard error. Samples of one pixel are better than
 /// independent, so the error is an upper bound.
-fn mean_of(film: &Film) -> (f64, f64) {
+pub(super) fn mean_of(film: &Film) -> (f64, f64) {
     let n = film.pixels.len() as f64;
     let sum: f64 = film
         .pixels
@@ -101,7 +102,7 @@ fn mean_of(film: &Film) -> (f64, f64) {
     (sum / n, variance.sqrt() / n)
 }
 
-const SAMPLERS: [Sampler; 5] = [
+pub(super) const SAMPLERS: [Sampler; 5] = [
     Sampler::Qsir,
     Sampler::QsirOneRay,
     Sampler::Bsdf,
@@ -324,6 +325,7 @@ fn the_floor_joins_the_backdrop() {
         materials: vec![HairMaterial::Isotropic(Rgb::splat(0.1))],
         skin: None,
         environment: Environment::white(),
+        lamps: &[],
         backdrop: Backdrop::Plain(backdrop),
         ground: Some(0.4),
         view: View {
@@ -363,6 +365,7 @@ fn look() {
             materials: vec![HairMaterial::Isotropic(albedo)],
             skin: None,
             environment: Environment::studio().turned(35.0),
+            lamps: &[],
             backdrop: Backdrop::default(),
             ground: Some(0.4),
             view: View::default(),

@@ -4,6 +4,7 @@ mod camera;
 mod environment;
 mod flatten;
 mod joints;
+mod lamps;
 mod ribbon;
 mod strands;
 mod surface;
@@ -16,6 +17,7 @@ pub use camera::{Camera, View};
 pub use environment::{
     Environment, EnvironmentError, EnvironmentSample, Sun, load as load_environment,
 };
+pub use lamps::{Emitter, Lamp, LampChoice, LampSample, LampShape, MOST_LAMPS};
 pub use ribbon::Segment;
 pub use strands::{Leaving, StrandHit, Strands};
 pub use surface::{Surface, SurfaceHit};
@@ -100,7 +102,7 @@ impl Ground {
         ))
     }
 
-    /// Radiance of white paint that sees the whole upper half of the environment.
+    /// Radiance of white paint that sees the whole upper half of the environment, and no lamps.
     pub fn open(&self) -> Rgb {
         self.open
     }
@@ -126,8 +128,10 @@ pub struct SceneParts<'a> {
     pub materials: Vec<HairMaterial>,
     /// The skin and its linear diffuse reflectance.
     pub skin: Option<(&'a Skin, Rgb)>,
-    /// The light.
+    /// The light from far away.
     pub environment: Environment,
+    /// Lamps beside it, at most [`MOST_LAMPS`].
+    pub lamps: &'a [Lamp],
     /// What is behind the subject.
     pub backdrop: Backdrop,
     /// Reflectance of a floor under the subject, 0..1; `None` for no floor.
@@ -150,8 +154,10 @@ pub struct Scene {
     pub surface: Option<Surface>,
     /// The floor under it.
     pub ground: Option<Ground>,
-    /// The light.
+    /// The light from far away.
     pub environment: Environment,
+    /// Lamps beside it.
+    pub lamps: Vec<Emitter>,
     /// What is behind the subject.
     pub backdrop: Backdrop,
     /// Where to look from.
@@ -167,6 +173,17 @@ pub enum Hit {
     Surface(SurfaceHit),
     /// The floor, at this distance.
     Ground(f32),
+}
+
+impl Hit {
+    /// Along the ray.
+    pub fn distance(&self) -> f32 {
+        match self {
+            Self::Strand(hit) => hit.t,
+            Self::Surface(hit) => hit.t,
+            Self::Ground(t) => *t,
+        }
+    }
 }
 
 impl Scene {
@@ -203,6 +220,7 @@ impl Scene {
             surface,
             ground: None,
             environment: parts.environment,
+            lamps: Vec::new(),
             backdrop: parts.backdrop,
             view: parts.view,
         };
@@ -210,10 +228,21 @@ impl Scene {
         let Some((lo, hi)) = bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else {
             return Err(SceneError::Empty);
         };
+        let center = 0.5 * (lo + hi);
+        let placed = (parts.lamps.iter().enumerate()).map(|(index, lamp)| {
+            let emitter = Emitter::new(lamp, center, 0.5 * (hi - lo).length());
+            emitter.ok_or(SceneError::Lamp { index })
+        });
+        scene.lamps = placed.collect::<Result<_, _>>()?;
+        if scene.lamps.len() > MOST_LAMPS {
+            return Err(SceneError::Lamps {
+                count: scene.lamps.len(),
+            });
+        }
         scene.ground = parts.ground.map(|reflectance| Ground {
             reflectance,
             height: lo.y,
-            center: 0.5 * (lo + hi),
+            center,
             reach: 1.5 * (hi - lo).length(),
             open: scene.environment.irradiance_up() / std::f32::consts::PI,
             light: scene.environment.above_horizon(),
@@ -225,6 +254,20 @@ impl Scene {
     pub fn camera(&self, aspect: f32) -> Camera {
         let points: Vec<Vec3> = self.subject().collect();
         Camera::framing(&points, &self.view, aspect)
+    }
+
+    /// Mean radiance over all directions, in the middle of the subject.
+    pub fn mean_light(&self) -> Rgb {
+        let lamps: Rgb = self.lamps.iter().map(Emitter::mean).sum();
+        self.environment.mean() + lamps
+    }
+
+    /// Radiance of white paint on the floor, at a point of it, if there were no subject.
+    pub fn open_floor(&self, ground: &Ground, point: Vec3) -> Rgb {
+        let lamps: Rgb = (self.lamps.iter())
+            .map(|lamp| lamp.irradiance(point, Vec3::Y))
+            .sum();
+        ground.open() + lamps / std::f32::consts::PI
     }
 
     /// The nearest thing in front of a ray.
@@ -245,9 +288,8 @@ impl Scene {
         found
     }
 
-    /// Whether anything hides the environment from the start of a ray.
-    pub fn occluded(&self, ray: &Ray, leaving: Option<Leaving>) -> bool {
-        let far = f32::INFINITY;
+    /// Whether anything is in front of a ray nearer than `far`, which is infinite for the environment.
+    pub fn occluded(&self, ray: &Ray, far: f32, leaving: Option<Leaving>) -> bool {
         self.ground
             .as_ref()
             .is_some_and(|g| g.hit(ray, far).is_some())
@@ -321,6 +363,18 @@ pub enum SceneError {
         count: usize,
         /// Where, millimeters.
         at: Vec3,
+    },
+    /// A lamp that cannot be placed.
+    #[error("lamp {} has no size or distance, or the middle of the subject is inside of it", index + 1)]
+    Lamp {
+        /// Which, from 0.
+        index: usize,
+    },
+    /// Too many lamps.
+    #[error("{count} lamps are given, at most {MOST_LAMPS} are possible")]
+    Lamps {
+        /// How many.
+        count: usize,
     },
     /// Hair classes without a material.
     #[error("the groom has {needed} hair classes but only {given} materials are given")]

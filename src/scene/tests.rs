@@ -190,6 +190,7 @@ fn strands_without_length_are_left_out_and_nothing_is_refused() {
         materials: vec![],
         skin: None,
         environment: Environment::white(),
+        lamps: &[],
         backdrop: Backdrop::default(),
         ground: None,
         view: View::default(),

@@ -4,11 +4,11 @@
 //! field descriptions, then the rules that join several values. Overrides change the document before
 //! the first pass, so they meet the same rules.
 
-mod build;
-mod check;
+pub(crate) mod build;
+pub(crate) mod check;
 mod coat;
-mod error;
-mod fields;
+pub(crate) mod error;
+pub(crate) mod fields;
 mod library;
 mod lookup;
 mod materials;
@@ -16,13 +16,13 @@ pub mod model;
 mod origin;
 mod overrides;
 mod pattern;
-mod recipe;
+pub(crate) mod recipe;
 mod schema;
-mod shape;
+pub(crate) mod shape;
 mod spectrum;
 mod start;
 mod stations;
-mod tree;
+pub(crate) mod tree;
 mod words;
 
 pub use coat::{
@@ -38,7 +38,7 @@ pub use pattern::{
     CuticlePattern, CyclesPer, MarginTerm, MarginWave, PATTERN_LIBRARY, PatternLayout,
     PatternRecipe, RowPhase, pattern_names,
 };
-pub use schema::{coat_schema, json_schema, pattern_schema};
+pub use schema::{coat_schema, json_schema, pattern_schema, scene_schema};
 pub use start::{is_id, start_from};
 
 use crate::io::{FileError, read_bounded};

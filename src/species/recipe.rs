@@ -15,7 +15,7 @@ use std::sync::Arc;
 const FILE_LIMIT: u64 = 256 << 10;
 
 /// The text of a recipe's file.
-pub(super) fn read(path: &Path) -> Result<String, FileError> {
+pub(crate) fn read(path: &Path) -> Result<String, FileError> {
     let refuse =
         |reason: String| FileError::new("read", path, Error::new(ErrorKind::InvalidData, reason));
     // A pipe or a device would never end or never begin.
@@ -33,7 +33,7 @@ pub(super) fn read(path: &Path) -> Result<String, FileError> {
 ///
 /// # Errors
 /// Everything that is wrong with it.
-pub(super) fn parse<T>(
+pub(crate) fn parse<T>(
     text: &str,
     file: &str,
     shape: &'static Shape,
@@ -55,7 +55,7 @@ pub(super) fn parse<T>(
 }
 
 /// A number that this recipe has to state.
-pub(super) fn need(table: &Checked, key: &str, problems: &mut Problems) -> Option<f64> {
+pub(crate) fn need(table: &Checked, key: &str, problems: &mut Problems) -> Option<f64> {
     if table.get(key).is_none() {
         missing(table, key, problems);
     }
@@ -66,7 +66,7 @@ pub(super) fn need(table: &Checked, key: &str, problems: &mut Problems) -> Optio
 ///
 /// * `space`: how a PNG is read if the table does not say it.
 /// * `folder`: where relative paths begin.
-pub(super) fn picture(
+pub(crate) fn picture(
     table: &Checked,
     space: &str,
     folder: &Path,
@@ -98,7 +98,7 @@ pub(super) fn picture(
 }
 
 /// Reports a key that has to be there, unless it is under another spelling.
-pub(super) fn missing(table: &Checked, key: &str, problems: &mut Problems) {
+pub(crate) fn missing(table: &Checked, key: &str, problems: &mut Problems) {
     if !table.is_misspelt(key) {
         let message = format!("`{}` is missing", table.path_of(key));
         problems.push(&table.place, message, None);
@@ -106,7 +106,7 @@ pub(super) fn missing(table: &Checked, key: &str, problems: &mut Problems) {
 }
 
 /// A text.
-pub(super) fn text(table: &Checked, key: &str) -> Option<String> {
+pub(crate) fn text(table: &Checked, key: &str) -> Option<String> {
     match &table.get(key)?.value {
         Value::Text(text) => Some(text.clone()),
         _ => None,
@@ -114,7 +114,7 @@ pub(super) fn text(table: &Checked, key: &str) -> Option<String> {
 }
 
 /// One word of several.
-pub(super) fn word(table: &Checked, key: &str) -> Option<&'static str> {
+pub(crate) fn word(table: &Checked, key: &str) -> Option<&'static str> {
     match table.get(key)?.value {
         Value::Choice(word) => Some(word),
         _ => None,

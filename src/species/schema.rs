@@ -5,6 +5,7 @@ use super::coat::COAT;
 use super::fields;
 use super::pattern::PATTERN;
 use super::shape::{Choice, Field, Kind, Presence, Range, Shape};
+use crate::scene_file::SCENE;
 use serde_json::{Map, Value, json};
 
 /// The schema (draft 2020-12).
@@ -25,6 +26,11 @@ pub fn pattern_schema() -> Value {
 /// The schema of coat recipes (draft 2020-12).
 pub fn coat_schema() -> Value {
     root_schema(&COAT, "Vair coat", Map::new())
+}
+
+/// The schema of scene files (draft 2020-12).
+pub fn scene_schema() -> Value {
+    root_schema(&SCENE, "Vair scene", Map::new())
 }
 
 fn root_schema(shape: &Shape, title: &str, mut definitions: Map<String, Value>) -> Value {
@@ -80,20 +86,16 @@ fn property(field: &Field, definitions: &mut Map<String, Value>) -> Value {
         Kind::Sources => json!({ "type": "object", "additionalProperties": text(1000) }),
         Kind::Number(range) => cited(number("number", *range)),
         Kind::Whole(range) => cited(number("integer", *range)),
-        Kind::Numbers(count, range) => cited(json!({
-            "type": "array",
-            "minItems": count,
-            "maxItems": count,
-            "items": number("number", *range),
-        })),
+        Kind::Numbers(count, range) => cited(numbers(*count, *range)),
+        Kind::Settings(count, range) => numbers(*count, *range),
+        Kind::Flag => json!({ "type": "boolean" }),
         Kind::Setting(range) => number("number", *range),
         Kind::Count(range) => number("integer", *range),
-        Kind::Point(range) => point(*range),
         Kind::Points(most, range) => json!({
             "type": "array",
             "minItems": 2,
             "maxItems": most,
-            "items": point(*range),
+            "items": numbers(3, *range),
         }),
         Kind::Words(choices) => {
             json!({ "type": "object", "additionalProperties": one_of(choices) })
@@ -133,16 +135,21 @@ fn reference(shape: &Shape, definitions: &mut Map<String, Value>) -> Value {
     json!({ "$ref": format!("#/$defs/{}", shape.name) })
 }
 
+fn numbers(count: usize, range: Range) -> Value {
+    json!({
+        "type": "array",
+        "minItems": count,
+        "maxItems": count,
+        "items": number("number", range),
+    })
+}
+
 fn number(kind: &str, range: Range) -> Value {
     let mut number = json!({ "type": kind, "minimum": range.min, "maximum": range.max });
     if !range.unit.is_empty() {
         number["$comment"] = json!(range.unit);
     }
     number
-}
-
-fn point(range: Range) -> Value {
-    json!({ "type": "array", "minItems": 3, "maxItems": 3, "items": number("number", range) })
 }
 
 /// A value by itself, or with its origin beside it.
@@ -200,5 +207,12 @@ mod tests {
     fn committed_coat_file_is_the_schema() {
         let committed = include_str!("../../schemas/coat.schema.json");
         assert_eq!(committed, format!("{:#}\n", super::coat_schema()));
+    }
+
+    /// To renew the file: `cargo run --release -- schema scene > schemas/scene.schema.json`.
+    #[test]
+    fn committed_scene_file_is_the_schema() {
+        let committed = include_str!("../../schemas/scene.schema.json");
+        assert_eq!(committed, format!("{:#}\n", super::scene_schema()));
     }
 }

@@ -61,12 +61,14 @@ pub(crate) enum Kind {
     Color(Range),
     /// A number that is no measurement and needs no origin.
     Setting(Range),
+    /// A fixed count of numbers that are no measurement.
+    Settings(usize, Range),
     /// As `Setting`, whole.
     Count(Range),
-    /// A place in space: three numbers that are no measurement.
-    Point(Range),
-    /// Two to so many of them, a line.
+    /// A line: two to so many points of three numbers.
     Points(usize, Range),
+    /// True or false.
+    Flag,
     /// Table of free keys, each with one of these words.
     Words(&'static [Choice]),
     /// One of these words.

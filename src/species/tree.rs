@@ -21,6 +21,8 @@ pub(crate) enum Data {
     Text(String),
     /// A number, and whether it was written as an integer.
     Number(f64, bool),
+    /// True or false.
+    Flag(bool),
     /// Anything else that TOML has and species files do not: its name.
     Other(&'static str),
     /// An array.
@@ -88,6 +90,7 @@ impl Node {
             Data::Text(text) => format!("the text {}", quote(text)),
             Data::Number(value, _) if value.abs() >= 1e15 => format!("{value:e}"),
             Data::Number(value, _) => format!("{value}"),
+            Data::Flag(flag) => format!("{flag}"),
             Data::Other(name) => (*name).to_owned(),
             Data::Array(items) => format!("an array of {}", items.len()),
             Data::Table(_) => "a table".to_owned(),
@@ -223,8 +226,7 @@ fn node(source: &Spanned<DeValue<'_>>, origin: &Where) -> Node {
             true,
         ),
         DeValue::Float(digits) => Data::Number(digits.as_str().parse().unwrap_or(f64::NAN), false),
-        DeValue::Boolean(true) => Data::Other("true"),
-        DeValue::Boolean(false) => Data::Other("false"),
+        DeValue::Boolean(flag) => Data::Flag(*flag),
         DeValue::Datetime(_) => Data::Other("a date"),
         DeValue::Array(items) => Data::Array(array(items, origin)),
         DeValue::Table(entries) => Data::Table(table(entries, origin)),

@@ -5,11 +5,12 @@ use crate::bsdf::ChiangParameters;
 use crate::cli::bake::{parse_count, parse_share, parse_time};
 use crate::cli::skin::SkinArgs;
 use crate::render::Crop;
+use crate::scene::Lamp;
 use std::path::PathBuf;
 use std::time::Duration;
 
 /// The arguments.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 #[command(after_help = "Examples:
   vair render red-fox -o red-fox.png
   vair render polar-bear --env sky --res 1280x720 --spp 128 -o bear.png -o bear.exr
@@ -18,9 +19,10 @@ use std::time::Duration;
   vair render red-fox --model chiang-fit -o shader.png
   vair render cat --coat leopard -o leopard.png
   vair render mink --skin sofa.obj --strands 1e6 -o sofa.png
+  vair render fox-at-dusk.toml --res 1280x720 -o dusk.png    # a scene file; see docs/scene.md
   vair render red-fox --crop 200,150,64,64 --spp 256 -o eye.exr")]
 pub(in crate::cli) struct Args {
-    /// A built-in species or a path to a species file.
+    /// A built-in species, a path to a species file, or a scene file, whose keys are options of this command.
     pub(super) name: String,
     /// Pattern of the coat: tabby, leopard, zebra, badger, fox, cow, countershaded, siamese,
     /// tortoiseshell, the path of a recipe, or none; if not given, that of the species.
@@ -28,18 +30,18 @@ pub(in crate::cli) struct Args {
     pub(super) coat: Option<String>,
     #[command(flatten)]
     pub(super) on: SkinArgs,
-    /// The light: studio, sky, white, or a latitude-longitude EXR or HDR file.
-    #[arg(long, default_value = "studio")]
-    pub(super) env: String,
+    /// The light: studio, sky, white, black, or a latitude-longitude EXR or HDR file; studio if not given.
+    #[arg(long)]
+    pub(super) env: Option<String>,
     /// Turns the light about the vertical, degrees.
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
-    pub(super) env_turn: f32,
+    #[arg(long, allow_negative_numbers = true)]
+    pub(super) env_turn: Option<f32>,
     /// Shows the environment behind the subject instead of a backdrop.
     #[arg(long)]
     pub(super) env_visible: bool,
-    /// Width and height of the picture.
-    #[arg(long, value_parser = parse::size, default_value = "640x480")]
-    pub(super) res: [u32; 2],
+    /// Width and height of the picture; 640x480 if not given.
+    #[arg(long, value_parser = parse::size)]
+    pub(super) res: Option<[u32; 2]>,
     /// Samples a pixel; 32 if not given.
     #[arg(long)]
     pub(super) spp: Option<u32>,
@@ -64,12 +66,12 @@ pub(in crate::cli) struct Args {
     /// Stops after this time with the samples there are, such as 90s or 5m.
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
     pub(super) time: Option<Duration>,
-    /// How directions are drawn; all give the same picture.
-    #[arg(long, value_enum, default_value = "qsir")]
-    pub(super) sampler: SamplerArg,
-    /// How samples spread over and around their pixel.
-    #[arg(long, value_enum, default_value = "gaussian")]
-    pub(super) filter: FilterArg,
+    /// How directions are drawn; all give the same picture. qsir if not given.
+    #[arg(long, value_enum)]
+    pub(super) sampler: Option<SamplerArg>,
+    /// How samples spread over and around their pixel; gaussian if not given.
+    #[arg(long, value_enum)]
+    pub(super) filter: Option<FilterArg>,
     /// Adds mattes by name to the EXR: hair classes and zones of the coat, skin and ground, after Cryptomatte.
     #[arg(long)]
     pub(super) cryptomatte: bool,
@@ -116,20 +118,21 @@ pub(in crate::cli) struct Args {
     /// Shifts the camera across and up, in radii of the subject.
     #[arg(long, value_parser = parse::pair, value_name = "X,Y", allow_hyphen_values = true)]
     pub(super) shift: Option<[f32; 2]>,
-    /// Diameter of the lens, millimeters: what is not at the distance of `--focus` blurs. 0 is a pinhole.
-    #[arg(long, value_name = "MM", default_value_t = 0.0)]
-    pub(super) lens: f32,
+    /// Diameter of the lens, millimeters: what is not at the distance of `--focus` blurs. 0, a pinhole, if not
+    /// given.
+    #[arg(long, value_name = "MM")]
+    pub(super) lens: Option<f32>,
     /// Distance from the camera that is sharp, millimeters; if not given, the nearest point of the subject.
-    #[arg(long, value_name = "MM", requires = "lens")]
+    #[arg(long, value_name = "MM")]
     pub(super) focus: Option<f32>,
     /// Leaves out the floor.
     #[arg(long)]
     pub(super) no_ground: bool,
     #[command(flatten)]
     pub(super) look: output::Look,
-    /// Seed of fiber, fur and picture.
-    #[arg(long, default_value_t = 0)]
-    pub(super) seed: u64,
+    /// Seed of fiber, fur and picture; 0 if not given.
+    #[arg(long)]
+    pub(super) seed: Option<u64>,
     /// Another seed for the noise of the picture alone.
     #[arg(long, value_name = "SEED")]
     pub(super) picture_seed: Option<u64>,
@@ -148,6 +151,9 @@ pub(in crate::cli) struct Args {
     /// Where the picture goes: .png or .exr, or .safetensors for its sums. May repeat.
     #[arg(long, short, required = true)]
     pub(super) output: Vec<PathBuf>,
+    /// Lamps of the scene file, and whether the yaw of each counts from the camera.
+    #[arg(skip)]
+    pub(super) lamps: Vec<(Lamp, bool)>,
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]

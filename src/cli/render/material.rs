@@ -47,7 +47,7 @@ pub(super) fn materials(
     let bake = Settings {
         photons: args.bake_photons,
         azimuths: args.azimuths,
-        seed: args.seed,
+        seed: args.seed(),
         ..Settings::cone()
     };
     let cancel = console.cancel();

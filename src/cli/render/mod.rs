@@ -2,6 +2,7 @@
 
 mod args;
 mod checkpoint;
+mod filled;
 mod material;
 pub(super) mod output;
 mod parse;
@@ -16,7 +17,7 @@ use crate::groom::{self, Groom, GroomSettings};
 use crate::hex::hex;
 use crate::io::check_writable;
 use crate::render::{Film, Filter, RenderJob, Rendering, Sampler};
-use crate::scene::{Backdrop, Environment, Scene, SceneParts, Sun, View, load_environment};
+use crate::scene::{Backdrop, Environment, Lamp, Scene, SceneParts, Sun, View, load_environment};
 use crate::skin::Skin;
 use crate::species;
 use args::{FilterArg, ModelArg, SamplerArg};
@@ -32,6 +33,7 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
 
 fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     // All that can be refused is refused before any work.
+    let args = &args.filled()?;
     let mut species = species::load(&args.name, &args.set)?;
     if let Some(coat) = &args.coat {
         species.wear(coat)?;
@@ -70,25 +72,27 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     }
 
     let cancel = console.cancel();
+    let lamps = lamps(args, &view);
     let mut stages = stats::Stages::begin();
     let materials = material::materials(args, &species, &given, console)?;
     stages.end("materials");
     let settings = GroomSettings {
         strands: args.strands.map(|n| n as usize),
-        seed: args.seed,
+        seed: args.seed(),
     };
     let groom = groom::grow(&skin, &species, &settings, console, cancel)?;
     stages.end("groom");
     for warning in &groom.warnings {
         console.say(format!("warning: {warning}"));
     }
-    console.say(format!("{} strands on {}", groom.strands(), args.on.skin));
+    console.say(format!("{} strands on {}", groom.strands(), args.on.name()));
     let color = Vec3::from_array(species.skin_color.map(|c| c as f32));
     let scene = Scene::build(SceneParts {
         groom: &groom,
         materials,
         skin: Some((&skin, color)),
         environment,
+        lamps: &lamps,
         backdrop: if args.env_visible {
             Backdrop::Environment
         } else {
@@ -154,20 +158,20 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
         [0, args.spp.unwrap_or(most)]
     });
     Ok(RenderJob {
-        resolution: args.res,
+        resolution: args.res(),
         crop: args.crop,
         spp: end - first,
         first,
         target_error: args.target_error,
-        seed: args.picture_seed.unwrap_or(args.seed),
-        sampler: match args.sampler {
+        seed: args.picture_seed.unwrap_or(args.seed()),
+        sampler: match args.sampler() {
             SamplerArg::Qsir => Sampler::Qsir,
             SamplerArg::QsirOneRay => Sampler::QsirOneRay,
             SamplerArg::Bsdf => Sampler::Bsdf,
             SamplerArg::Env => Sampler::Env,
             SamplerArg::Mis => Sampler::Mis,
         },
-        filter: match args.filter {
+        filter: match args.filter() {
             FilterArg::Gaussian => Filter::Gaussian,
             FilterArg::Box => Filter::Box,
             FilterArg::Tent => Filter::Tent,
@@ -179,14 +183,15 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
 
 /// All that decides the samples besides the job; of environments and tables from files their names.
 fn identity(args: &Args, species: &species::Species, groom: &Groom, scene: &Scene) -> Origin {
+    let res = args.res();
     let mut settings = format!(
         "skin {} env {} env-turn {} res {}x{} sampler {:?} strands {:?} bake-photons {}",
-        args.on.skin,
-        args.env,
-        args.env_turn,
-        args.res[0],
-        args.res[1],
-        args.sampler,
+        args.on.name(),
+        args.env(),
+        args.env_turn(),
+        res[0],
+        res[1],
+        args.sampler(),
         args.strands,
         args.bake_photons
     );
@@ -203,6 +208,9 @@ fn identity(args: &Args, species: &species::Species, groom: &Groom, scene: &Scen
     if args.coat.as_deref() == Some("none") {
         settings += " coat none";
     }
+    for (lamp, with_camera) in &args.lamps {
+        settings += &format!(" {lamp:?} with camera {with_camera}");
+    }
     // Only what goes on later has to be known again, and large grooms take a while to hash.
     let is_kept = args.checkpoint.is_some()
         || (args.output.iter()).any(|path| matches!(output::format_of(path), Ok(Format::Sums)));
@@ -210,7 +218,7 @@ fn identity(args: &Args, species: &species::Species, groom: &Groom, scene: &Scen
         species: species.id.clone(),
         species_text: species.text.clone(),
         settings,
-        seed: args.seed,
+        seed: args.seed(),
         view: format!("{:?}", scene.view),
         geometry: if is_kept {
             fingerprint(groom, scene)
@@ -242,13 +250,14 @@ fn fingerprint(groom: &Groom, scene: &Scene) -> String {
 }
 
 fn environment(args: &Args, view: &View) -> Result<Environment, Failure> {
-    parse::check_range("--env-turn", args.env_turn, -3600.0, 3600.0)?;
-    Ok(match args.env.as_str() {
+    parse::check_range("--env-turn", args.env_turn(), -3600.0, 3600.0)?;
+    Ok(match args.env() {
         // Studio lights stand around the camera; sun and pictures stay where they are.
-        "studio" => Environment::studio().turned(view.yaw_deg + args.env_turn),
-        "sky" => Environment::sky(&Sun::default()).turned(args.env_turn),
+        "studio" => Environment::studio().turned(view.yaw_deg + args.env_turn()),
+        "sky" => Environment::sky(&Sun::default()).turned(args.env_turn()),
         "white" => Environment::white(),
-        path => load_environment(Path::new(path))?.turned(args.env_turn),
+        "black" => Environment::black(),
+        path => load_environment(Path::new(path))?.turned(args.env_turn()),
     })
 }
 
@@ -257,19 +266,36 @@ fn view(args: &Args, skin: &Skin) -> Result<View, Failure> {
     let base = View::from_direction(skin.view);
     let [yaw_deg, pitch_deg] = args.view.unwrap_or([base.yaw_deg, base.pitch_deg]);
     parse::check_range("--view pitch", pitch_deg, -89.0, 89.0)?;
+    let lens = parse::check_range("--lens", args.lens.unwrap_or(0.0), 0.0, 1000.0)?;
+    if args.focus.is_some() && lens == 0.0 {
+        return Err(Failure::with_help(
+            Blame::Input,
+            "--focus is given without --lens: a pinhole sees all sharp",
+            "add --lens MM, the diameter of the lens",
+        ));
+    }
     Ok(View {
         yaw_deg,
         pitch_deg,
         fov_deg: parse::check_range("--fov", args.fov.unwrap_or(base.fov_deg), 1.0, 150.0)?,
         zoom: parse::check_range("--zoom", args.zoom.unwrap_or(base.zoom), 0.01, 1000.0)?,
         shift: args.shift.unwrap_or(base.shift),
-        lens: parse::check_range("--lens", args.lens, 0.0, 1000.0)?,
+        lens,
         focus: match args.focus {
             Some(mm) => Some(parse::check_range("--focus", mm, 1.0, 1e6)?),
             None => None,
         },
         ..base
     })
+}
+
+/// The lamps of a scene file, those beside the camera where it stands.
+fn lamps(args: &Args, view: &View) -> Vec<Lamp> {
+    let place = |&(lamp, with_camera): &(Lamp, bool)| Lamp {
+        yaw_deg: lamp.yaw_deg + if with_camera { view.yaw_deg } else { 0.0 },
+        ..lamp
+    };
+    args.lamps.iter().map(place).collect()
 }
 
 fn report(film: &Film, console: &Console) {

@@ -1,21 +1,21 @@
 //! Pictures of a film, by the names of their files.
 
 use crate::blame::Blame;
-use crate::cli::Failure;
+use crate::cli::{Failure, named};
 use crate::image::{self, ViewTransform};
 use crate::render::{Film, FilmSums};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// How a PNG shows the picture.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub(in crate::cli) struct Look {
-    /// Exposure of the PNG, in stops.
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
-    exposure: f32,
-    /// How the PNG shows bright parts.
-    #[arg(long, value_enum, default_value = "soft")]
-    look: LookArg,
+    /// Exposure of the PNG, in stops; 0 if not given.
+    #[arg(long, allow_negative_numbers = true)]
+    exposure: Option<f32>,
+    /// How the PNG shows bright parts; soft if not given.
+    #[arg(long, value_enum)]
+    look: Option<LookArg>,
     /// Write the PNG as it was sampled. By default noise is taken out of it, never out of the EXR.
     #[arg(long)]
     no_denoise: bool,
@@ -31,6 +31,14 @@ enum LookArg {
     Neutral,
     /// As they are, cut at white.
     Srgb,
+}
+
+impl Look {
+    /// Fills what is not given with what a scene file says.
+    pub(super) fn fill(&mut self, look: Option<&str>, exposure: Option<f32>) {
+        self.look = self.look.or(look.and_then(named));
+        self.exposure = self.exposure.or(exposure);
+    }
 }
 
 /// Where a picture comes from: all that decides its samples besides their numbers.
@@ -97,8 +105,8 @@ pub(in crate::cli) fn write(
         ("seed", seed.as_str()),
     ];
     let view = ViewTransform {
-        exposure_ev: look.exposure,
-        look: match look.look {
+        exposure_ev: look.exposure.unwrap_or(0.0),
+        look: match look.look.unwrap_or(LookArg::Soft) {
             LookArg::Soft => image::Look::Soft,
             LookArg::Filmic => image::Look::Filmic,
             LookArg::Neutral => image::Look::Neutral,

@@ -47,9 +47,17 @@ const STUDIO: [Panel; 4] = [
 ];
 
 impl Environment {
+    /// Names of those that need no file.
+    pub const BUILT_IN: [&str; 4] = ["studio", "sky", "white", "black"];
+
     /// Radiance 1 from everywhere: in it a lossless subject cannot be seen.
     pub fn white() -> Self {
         Self::from_texels(1, 1, vec![Rgb::ONE])
+    }
+
+    /// No light at all, to be lit by lamps.
+    pub fn black() -> Self {
+        Self::from_texels(1, 1, vec![Rgb::ZERO])
     }
 
     /// A photo studio seen from a camera on the +Z side; turn it along with the camera.

@@ -224,7 +224,7 @@ pub(super) fn number_of(item: &Item) -> Option<f64> {
     }
 }
 
-fn numbers(parent: &Checked, key: &str) -> Option<Vec<f64>> {
+pub(crate) fn numbers(parent: &Checked, key: &str) -> Option<Vec<f64>> {
     match &parent.get(key)?.value {
         Value::Numbers(numbers) => Some(numbers.clone()),
         _ => None,

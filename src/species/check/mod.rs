@@ -40,6 +40,8 @@ pub(crate) struct Item {
 pub(crate) enum Value {
     /// A number in range.
     Number(f64),
+    /// True or false.
+    Flag(bool),
     /// Numbers in range, as many as asked for.
     Numbers(Vec<f64>),
     /// Places in space.

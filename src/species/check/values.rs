@@ -22,8 +22,12 @@ impl Checker<'_> {
             Kind::Sources => self.sources(node, path),
             Kind::Setting(range) => self.number(node, path, *range, false),
             Kind::Count(range) => self.number(node, path, *range, true),
-            Kind::Point(range) => self.list(node, path, 3, *range),
             Kind::Points(most, range) => self.points(node, path, *most, *range),
+            Kind::Settings(count, range) => self.list(node, path, *count, *range),
+            Kind::Flag => match node.data {
+                Data::Flag(flag) => Value::Flag(flag),
+                _ => self.wrong(node, path, "true or false"),
+            },
             Kind::Words(choices) => self.words(node, path, choices),
             Kind::Choice(choices) => self.choice(node, path, choices),
             Kind::ChoiceOrFile(choices) => match &node.data {

@@ -61,7 +61,7 @@ static WHORL: Shape = Shape {
     fields: &[
         Field::layered(
             "center",
-            Kind::Point(number(-FARTHEST, FARTHEST, "")),
+            Kind::Settings(3, number(-FARTHEST, FARTHEST, "")),
             "Its center, in the coordinates of the skin's file; of built-in skins in meters, Y up. The \
              nearest place of the skin is taken.",
         ),
