@@ -50,10 +50,7 @@ impl Cone {
         0.5 * (dir - self.axis).length_squared() < self.versine
     }
 
-    /// Irradiance of radiance 1 on a plane, with what is below its horizon cut off.
-    ///
-    /// Snyder, "Area Light Sources for Real-Time Graphics" (1996); Lagarde and de Rousiers, "Moving Frostbite
-    /// to PBR" (2014), listing 10.
+    /// Irradiance of radiance 1 on a plane, with what is below its horizon cut off.    [Snyder96]
     ///
     /// * `normal`: unit, of the plane.
     pub(super) fn irradiance(&self, normal: DVec3) -> f64 {

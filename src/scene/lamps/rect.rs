@@ -1,6 +1,4 @@
-//! Rectangular lamps. Directions are drawn evenly by solid angle.
-//!
-//! Ureña, Fajardo and King, "An Area-Preserving Parametrization for Spherical Rectangles" (2013).
+//! Rectangular lamps. Directions are drawn evenly by solid angle.    [Urena13]
 
 use glam::DVec3;
 use std::f64::consts::TAU;
