@@ -85,7 +85,7 @@ fn clear_fur_is_as_bright_as_a_room_of_lamps() {
             _ => 3.0 * (error / all) as f32,
         };
         assert!((mean - 1.0).abs() < most, "{sampler:?}: {mean} +- {most}");
-        assert!(most < 0.03, "{sampler:?}: {most}");
+        assert!(most < 0.04, "{sampler:?}: {most}");
         assert_eq!((film.report.dropped, film.report.capped), (0, 0));
     }
 }
