@@ -210,3 +210,32 @@ fn the_bytes_do_not_depend_on_threads() {
     };
     assert!(written("1") == written("4"));
 }
+
+/// The file says what became of the follicles of each class, as the console does.
+#[test]
+fn what_did_not_grow_stands_in_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let entry = "{what=\"density\",by=\"noise\",size_mm=20,from=0.3,to=0.6}";
+    let vary = format!("under.groom.vary=[{entry}]");
+    let arguments = ["--set", &vary, "--strands", "2000", "-o", "fox.usda"];
+    let output = export(folder.path(), &arguments);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    let text = fs::read_to_string(folder.path().join("fox.usda")).unwrap();
+    let start = text.find("dictionary follicles").unwrap();
+    let told = &text[start..start + text[start..].find("string program").unwrap()];
+    let count = |class: &str, name: &str| -> usize {
+        let of = told.split_once(&format!("dictionary {class} ")).unwrap().1;
+        let of = of.split_once('}').unwrap().0;
+        let line = of.split_once(&format!("int {name} = ")).map(|(_, n)| n);
+        line.map_or(0, |n| n.lines().next().unwrap().parse().unwrap())
+    };
+    let (asked, lost) = (count("under", "asked"), count("under", "less_density"));
+    assert!(
+        lost > asked / 3 && asked == count("under", "grown") + lost,
+        "{told}"
+    );
+    let sentence = format!("{lost} of {asked} strands of `under` did not grow: {lost} are where");
+    assert!(said.contains(&sentence), "{said}");
+    assert_eq!(count("guard", "less_density"), 0);
+}

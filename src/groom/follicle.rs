@@ -18,8 +18,8 @@ pub(super) fn class_seed(seed: u64, class: usize) -> u64 {
 pub(super) struct Follicle {
     /// On the triangle.
     pub(super) position: Vec3,
-    triangle: u32,
-    barycentric: [f32; 2],
+    pub(super) triangle: u32,
+    pub(super) barycentric: [f32; 2],
 }
 
 /// The skin at a follicle.

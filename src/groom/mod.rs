@@ -1,5 +1,6 @@
 //! Strands of fur on a skin, in flat arrays.
 
+mod account;
 mod clump;
 mod coat;
 mod comb;
@@ -12,6 +13,9 @@ mod follicle;
 mod near;
 mod noise;
 mod plan;
+mod pores;
+#[cfg(test)]
+mod pores_tests;
 mod scatter;
 #[cfg(test)]
 mod scatter_tests;
@@ -23,7 +27,9 @@ mod tests;
 mod vary;
 #[cfg(test)]
 mod vary_tests;
+mod walk;
 
+pub use account::Account;
 pub(crate) use cover::widenings;
 pub use error::GroomError;
 pub use plan::{DEFAULT_STRANDS, MAX_CLASSES, MAX_STRANDS};
@@ -79,6 +85,8 @@ pub struct Groom {
     pub skin_tint: Vec<Vec3>,
     /// What could not be grown as asked, one sentence each.
     pub warnings: Vec<String>,
+    /// Per class: how many hairs were asked for, and what became of them.
+    pub accounts: Vec<Account>,
     /// Per class: factor on the natural diameter by which a thinned groom stays opaque; 1 at full
     /// density.
     pub width_scale: Vec<f32>,
@@ -187,7 +195,18 @@ pub fn grow(
     let plan = plan::plan(skin, surface.weighted_area(), species, settings.strands)?;
     let total: usize = plan.iter().map(|c| c.strands).sum();
     progress.begin("growing fur", 2 * total as u64, "strands");
+    let comb = Comb::new(&species.groom.comb, skin);
     let scatter = || -> Result<Vec<_>, GroomError> {
+        if let Some(recipe) = &species.groom.pores {
+            let dealt = pores::Dealt {
+                recipe,
+                species,
+                plan: &plan,
+                comb: comb.as_ref(),
+                seed: settings.seed,
+            };
+            return dealt.scatter(&surface, skin, progress, cancel);
+        }
         (plan.par_iter().enumerate())
             .map(|(class, plan)| {
                 let seed = follicle::class_seed(settings.seed, class);
@@ -203,7 +222,6 @@ pub fn grow(
     let field = || (skin.gravity == 0.0).then(|| Field::new(skin));
     let (scattered, (coat, field)) = rayon::join(scatter, || (paint(), field()));
     let (scattered, coat) = (scattered?, coat?);
-    let comb = Comb::new(&species.groom.comb, skin);
     let mut groom = Groom {
         classes: species.classes.iter().map(|c| c.name.clone()).collect(),
         coats: match &species.coat {
@@ -244,9 +262,17 @@ pub fn grow(
             .collect();
         let grown = fates.iter().enumerate().filter(|(_, f)| **f == Fate::Grown);
         let ranks: Vec<u32> = grown.map(|(rank, _)| rank as u32).collect();
+        let count = |fate| fates.iter().filter(|f| **f == fate).count();
+        let account = Account {
+            asked: fates.len(),
+            short: count(Fate::Short),
+            thin: count(Fate::Thin),
+            sparse: count(Fate::Sparse),
+            crowded: scattered.crowded,
+        };
         groom
             .warnings
-            .extend(missing(&groom.classes[class], &fates));
+            .extend(account.missing(&groom.classes[class]));
         groom
             .warnings
             .extend(scattered.crowding(&groom.classes[class], skin));
@@ -309,6 +335,7 @@ pub fn grow(
         if cancel.is_cancelled() {
             return Err(GroomError::Cancelled);
         }
+        groom.accounts.push(account);
         let ends = (1..=ranks.len()).map(|i| (start + i * per_strand) as u32);
         groom.offsets.extend(ends);
         groom.class.resize(first + ranks.len(), class as u8);
@@ -342,31 +369,6 @@ enum Fate {
     Thin,
     /// None: fewer hairs grow here.
     Sparse,
-}
-
-/// What is to be said of follicles that have no hair.
-fn missing(class: &str, fates: &[Fate]) -> Option<String> {
-    let count = |fate| fates.iter().filter(|f| **f == fate).count();
-    let reasons: Vec<(usize, &str)> = [
-        (count(Fate::Short), "would be shorter than thick"),
-        (count(Fate::Thin), "would have no width"),
-        (count(Fate::Sparse), "are where its density is less"),
-    ]
-    .into_iter()
-    .filter(|(count, _)| *count > 0)
-    .collect();
-    let lost: usize = reasons.iter().map(|(count, _)| count).sum();
-    let said: Vec<String> = (reasons.iter())
-        .map(|(count, why)| format!("{count} {why}"))
-        .collect();
-    let all = fates.len();
-    (!reasons.is_empty()).then(|| {
-        format!(
-            "{} of {all} strands of `{class}` did not grow: {}",
-            lost,
-            said.join(", ")
-        )
-    })
 }
 
 fn arc_length(points: &[Vec3]) -> f32 {

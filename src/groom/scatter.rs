@@ -146,7 +146,7 @@ pub(super) struct Scattered {
     /// In their order: of these any first ones are evenly spread too.
     pub(super) follicles: Vec<Follicle>,
     /// How many of them, the last ones, had no room at the distance that they should have.
-    crowded: usize,
+    pub(super) crowded: usize,
 }
 
 impl Scattered {

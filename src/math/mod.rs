@@ -6,6 +6,7 @@ pub mod ease;
 pub mod frame;
 pub mod fresnel;
 pub mod octahedral;
+pub(crate) mod shear;
 pub mod symmetry;
 pub mod turn;
 pub mod unicube;

@@ -3,6 +3,7 @@
 use super::Parts;
 use crate::PROGRAM;
 use crate::export::usd::{Attribute, Dictionary, Prim, Value};
+use crate::groom::Account;
 use crate::hex::hex;
 use sha2::{Digest as _, Sha256};
 
@@ -48,12 +49,29 @@ pub(super) fn recipe<'a>(parts: &Parts<'_>) -> Dictionary<'a> {
         ("species_text", Value::string(&species.text)),
         ("strands", Value::Int(parts.groom.strands() as i32)),
     ];
+    let accounts = parts.groom.classes.iter().zip(&parts.groom.accounts);
+    let accounts = accounts.map(|(class, account)| (identifier(class), told(account)));
+    entries.insert(0, ("follicles", sorted(accounts)));
     if !parts.coats.is_empty() {
         let names: Vec<&str> = parts.coats.iter().map(|coat| coat.name).collect();
         entries.insert(0, ("coats", Value::string(names.join(" "))));
     }
     let entries = entries.into_iter().map(|(k, v)| (k.to_owned(), v));
     vec![("vair".to_owned(), Value::Dictionary(entries.collect()))]
+}
+
+/// How many hairs of a class were asked for, how many grew, and why others did not or not as asked.
+fn told<'a>(account: &Account) -> Value<'a> {
+    let counts = [("asked", account.asked), ("grown", account.grown())];
+    let counts = counts.into_iter().chain(account.reasons());
+    sorted(counts.map(|(name, count)| (name.to_owned(), Value::Int(count as i32))))
+}
+
+/// A dictionary in the order in which USD keeps it.
+fn sorted<'a>(entries: impl Iterator<Item = (String, Value<'a>)>) -> Value<'a> {
+    let mut entries: Dictionary<'_> = entries.collect();
+    entries.sort_by(|a, b| a.0.cmp(&b.0));
+    Value::Dictionary(entries)
 }
 
 /// What Blender shows as custom properties.

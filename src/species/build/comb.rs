@@ -1,23 +1,14 @@
 //! Combing curves and whorls.
 
-use super::{Reader, number, place_of, table, tables};
+use super::{Reader, number, place_of, tables};
 use crate::polyline_file;
 use crate::skin::Landmark;
 use crate::species::check::{Checked, Value};
-use crate::species::model::{Comb, CombCurve, Hand, SharedGroom, Whorl, WhorlCenter};
+use crate::species::model::{Comb, CombCurve, Hand, Whorl, WhorlCenter};
 use crate::species::recipe::{missing, text, word};
 
 impl Reader<'_> {
-    /// What all classes share; what is refused is left out.
-    pub(super) fn shared_groom(&mut self, root: &Checked) -> SharedGroom {
-        let groom = table(root, "groom");
-        let comb = groom.and_then(|groom| table(groom, "comb"));
-        SharedGroom {
-            comb: comb.map(|comb| self.comb(comb)).unwrap_or_default(),
-        }
-    }
-
-    fn comb(&mut self, comb: &Checked) -> Comb {
+    pub(super) fn comb(&mut self, comb: &Checked) -> Comb {
         let list = |key| tables(comb, key).unwrap_or_default().iter();
         Comb {
             curves: list("curve").filter_map(|t| self.curve(t)).collect(),

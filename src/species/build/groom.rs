@@ -1,8 +1,9 @@
 //! How a hair class grows.
 
-use super::{Reader, number, numbers, place_of};
+use super::{Reader, number, numbers, place_of, table as table_of};
 use crate::species::check::Checked;
-use crate::species::model::ClassGroom;
+use crate::species::model::{Arrangement, ClassGroom, Comb, HairClass, Pores, SharedGroom};
+use crate::species::recipe::word;
 
 /// A hair shorter than this many diameters is not a hair.
 const SHORTEST: f64 = 20.0;
@@ -37,6 +38,47 @@ impl Reader<'_> {
             clump: number(table, "clump")?,
             clump_mm: number(table, "clump_mm")?,
             vary,
+        })
+    }
+
+    /// What all classes share; what is refused is left out.
+    ///
+    /// * `classes`: those of the species, if all of them could be read.
+    pub(super) fn shared_groom(
+        &mut self,
+        root: &Checked,
+        classes: Option<&Vec<HairClass>>,
+    ) -> SharedGroom {
+        let Some(groom) = table_of(root, "groom") else {
+            return SharedGroom::default();
+        };
+        SharedGroom {
+            comb: table_of(groom, "comb").map_or_else(Comb::default, |comb| self.comb(comb)),
+            pores: table_of(groom, "pores").and_then(|pores| self.pores(pores, classes)),
+        }
+    }
+
+    fn pores(&mut self, table: &Checked, classes: Option<&Vec<HairClass>>) -> Option<Pores> {
+        let density_per_cm2 = number(table, "density_per_cm2");
+        let hairs = classes.map_or(f64::INFINITY, |classes| {
+            classes.iter().map(|c| c.groom.density_per_cm2).sum()
+        });
+        if let Some(density) = density_per_cm2
+            && density > hairs
+        {
+            let path = table.path_of("density_per_cm2");
+            let message = format!("`{path}` is {density}, expected at most {hairs}: all hairs");
+            let hint = "each group has a hair";
+            self.conflict(place_of(table, "density_per_cm2"), message, hint);
+        }
+        Some(Pores {
+            density_per_cm2,
+            spread_mm: number(table, "spread_mm")?,
+            arrangement: match word(table, "arrangement") {
+                Some("row") => Arrangement::Row,
+                _ => Arrangement::Cluster,
+            },
+            uneven: number(table, "uneven").unwrap_or(0.3),
         })
     }
 

@@ -54,7 +54,7 @@ pub(crate) fn build(
         }
     }
     let coat = reader.coat(root);
-    let groom = reader.shared_groom(root);
+    let groom = reader.shared_groom(root, complete.then_some(&classes));
     if !complete || classes.is_empty() {
         return None;
     }

@@ -1,9 +1,9 @@
 //! The fields of how a hair class grows.
 
 use super::comb::COMB;
-use super::number;
 use super::vary::VARY;
-use crate::species::shape::{Field, Kind, Shape};
+use super::{choice, number};
+use crate::species::shape::{Choice, Field, Kind, Shape};
 
 pub(super) static GROOM: Shape = Shape {
     name: "groom",
@@ -128,9 +128,50 @@ pub(super) static SHARED: Shape = Shape {
     name: "shared-groom",
     doc: "What all hair classes share in how they grow.",
     cited: false,
-    fields: &[Field::optional(
-        "comb",
-        Kind::Table(&COMB),
-        "Lines and whorls along which hair lies, in place of the lay of the skin.",
-    )],
+    fields: &[
+        Field::optional(
+            "comb",
+            Kind::Table(&COMB),
+            "Lines and whorls along which hair lies, in place of the lay of the skin.",
+        ),
+        Field::optional(
+            "pores",
+            Kind::Table(&PORES),
+            "Hairs leave the skin in groups; each by itself when left out.",
+        ),
+    ],
 };
+
+static PORES: Shape = Shape {
+    name: "pores",
+    doc: "Compound follicles: hairs that leave the skin together, the others behind the guard hair.",
+    cited: true,
+    fields: &[
+        Field::optional(
+            "density_per_cm2",
+            Kind::Number(number(0.1, 200_000.0, "per cm2")),
+            "Groups per square centimeter of skin, so that each has as many hairs as the densities of the \
+             classes make; as many as hairs of the first class when left out.",
+        ),
+        Field::required(
+            "spread_mm",
+            Kind::Number(number(0.0, 10.0, "mm")),
+            "How far hairs stand from the first of their group at most.",
+        ),
+        Field::optional(
+            "arrangement",
+            Kind::Choice(ARRANGEMENTS),
+            "How they stand; a cluster when left out.",
+        ),
+        Field::optional(
+            "uneven",
+            Kind::Setting(number(0.0, 1.0, "")),
+            "How unequal groups are: 0 all alike, 1 from none to twice as many; 0.3 when left out.",
+        ),
+    ],
+};
+
+const ARRANGEMENTS: &[Choice] = &[
+    choice("cluster", "in half a disc on the side to which hair lies"),
+    choice("row", "in a row across the lay, behind the first hair"),
+];

@@ -141,6 +141,9 @@ pub struct SharedGroom {
     /// Lines and whorls along which hair lies.
     #[serde(skip_serializing_if = "Comb::is_empty")]
     pub comb: Comb,
+    /// Groups in which hairs leave the skin; `None` if each does by itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pores: Option<Pores>,
 }
 
 impl SharedGroom {
@@ -148,6 +151,30 @@ impl SharedGroom {
     fn is_plain(&self) -> bool {
         *self == Self::default()
     }
+}
+
+/// Compound follicles.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Pores {
+    /// Groups per square centimeter; `None` for as many as hairs of the first class.
+    pub density_per_cm2: Option<f64>,
+    /// How far hairs stand from the first of their group at most, millimeters.
+    pub spread_mm: f64,
+    /// How they stand.
+    pub arrangement: Arrangement,
+    /// How unequal groups are, 0 all alike .. 1.
+    pub uneven: f64,
+}
+
+/// How the hairs of a group stand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Arrangement {
+    /// In half a disc on the side to which hair lies.
+    #[default]
+    Cluster,
+    /// In a row across the lay.
+    Row,
 }
 
 /// How one hair class grows.

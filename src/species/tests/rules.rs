@@ -143,6 +143,12 @@ fn rules_between_values_hold_at_both_ends() {
             ],
             "",
         ),
+        ("every-key", &["groom.pores.density_per_cm2=200"], ""),
+        (
+            "every-key",
+            &["groom.pores.density_per_cm2=200.1"],
+            "at most 200: all hairs",
+        ),
         ("fox", &["guard.stations.1.medulla.septum_um=6.9"], ""),
         (
             "fox",
