@@ -21,9 +21,11 @@ use std::f32::consts::PI;
 /// Steps of the plane's most even additive sequence (Roberts 2018, "The unreasonable effectiveness of
 /// quasirandom sequences"): powers of the inverse of the plastic number.
 const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
-/// Hairs of a row stand so far behind the guard hair, and so unevenly, in shares of the row's half length.
+/// Hairs of a row stand so far behind the guard hair, and so unevenly, in shares of the largest distance.
 const BEHIND: f32 = 0.4;
 const RAGGED: f32 = 0.15;
+/// Half length of a row, so that its ends are no farther from the guard hair than others may be.
+const ACROSS: f32 = 0.88;
 
 /// What hairs are dealt to pores.
 pub(super) struct Dealt<'a> {
@@ -105,7 +107,7 @@ impl Dealer<'_> {
                 let (sin, cos) = (PI * (u - 0.5)).sin_cos();
                 (v.sqrt() * cos, v.sqrt() * sin)
             }
-            Arrangement::Row => (BEHIND + RAGGED * (v - 0.5), 2.0 * u - 1.0),
+            Arrangement::Row => (BEHIND + RAGGED * (v - 0.5), ACROSS * (2.0 * u - 1.0)),
         };
         let from = &self.places[pore];
         let root = self.surface.root(from);

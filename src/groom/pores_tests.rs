@@ -64,6 +64,11 @@ fn the_undercoat_stands_behind_its_guard_hair() {
         for (pore, way) in groups(&groom) {
             counts[pore] += 1;
             let root = guards[pore].0;
+            // At the border there is no skin to stand on.
+            let border = (groom.root_uv[root] - 0.5).abs().max_element();
+            if 0.5 - border < SPREAD_MM as f32 / 60.0 {
+                continue;
+            }
             let triangle = skin.triangles[groom.root_triangle[root] as usize];
             let lay = skin.combing[triangle[0] as usize];
             let normal = skin.normals[triangle[0] as usize];
@@ -71,7 +76,7 @@ fn the_undercoat_stands_behind_its_guard_hair() {
             // The skin bends a little over a triangle.
             let back = unit.dot(lay);
             assert!(back > behind[0] - 0.04 && back < behind[1] + 0.04, "{unit}");
-            assert!(unit.length() < 1.1, "{unit}");
+            assert!(unit.length() < 1.001, "{unit}");
             across += unit.dot(lay.cross(normal));
             widest = widest.max(unit.dot(lay.cross(normal)).abs());
         }

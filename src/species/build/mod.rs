@@ -54,7 +54,10 @@ pub(crate) fn build(
         }
     }
     let coat = reader.coat(root);
-    let groom = reader.shared_groom(root, complete.then_some(&classes));
+    let groom = reader.shared_groom(
+        root,
+        Some(&classes).filter(|all| complete && !all.is_empty()),
+    );
     if !complete || classes.is_empty() {
         return None;
     }
