@@ -50,7 +50,8 @@ impl Cone {
         0.5 * (dir - self.axis).length_squared() < self.versine
     }
 
-    /// Irradiance of radiance 1 on a plane, with what is below its horizon cut off.    [Snyder96]
+    /// Irradiance of radiance 1 on a plane, with what is below its horizon cut off: Snyder 1996, Snyder96 in
+    /// REFERENCES.md.
     ///
     /// * `normal`: unit, of the plane.
     pub(super) fn irradiance(&self, normal: DVec3) -> f64 {

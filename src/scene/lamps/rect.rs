@@ -1,4 +1,4 @@
-//! Rectangular lamps. Directions are drawn evenly by solid angle.    [Urena13]
+//! Rectangular lamps. Directions are drawn evenly by solid angle. After Ureña et al. 2013, Urena13 in REFERENCES.md.
 
 use glam::DVec3;
 use std::f64::consts::TAU;
