@@ -2,7 +2,7 @@
 //! two pictures can be compared.
 //!
 //! A folder of `scene.xml`, `hair.txt` (B-spline control points in millimeters, `x y z radius` a line, an
-//! empty line after each strand), `skin.ply` and `environment.exr`. Floor and backdrop stay behind: they
+//! empty line after each strand), `skin.ply` and `environment.exr`, and lamps. Floor and backdrop stay behind: they
 //! are no part of the light transport, or not one that Mitsuba has.
 
 use crate::bsdf::ChiangParameters;
@@ -10,7 +10,7 @@ use crate::color::Rgb;
 use crate::groom::Groom;
 use crate::io::{AtomicFile, FileError};
 use crate::render::{Filter, GAUSSIAN_SIGMA, RenderJob};
-use crate::scene::{Camera, Environment};
+use crate::scene::{Camera, Emitter, EmitterShape, Environment};
 use crate::skin::Skin;
 use exr::prelude::{Image, SpecificChannels, WritableImage};
 use glam::{Vec3, Vec4};
@@ -33,6 +33,8 @@ pub struct MitsubaScene<'a> {
     pub skin: Option<(&'a Skin, Rgb)>,
     /// The light.
     pub environment: &'a Environment,
+    /// Lamps beside it. Mitsuba's hide what is behind them and are seen.
+    pub lamps: &'a [Emitter],
     /// The place of the camera.
     pub camera: &'a Camera,
     /// Size, samples and filter of the picture.
@@ -97,8 +99,6 @@ impl MitsubaScene<'_> {
 <film type=\"hdrfilm\"><integer name=\"width\" value=\"{width}\"/><integer name=\"height\" value=\"{height}\"/>
 {filter}<string name=\"component_format\" value=\"float32\"/></film>
 </sensor>
-<emitter type=\"envmap\"><string name=\"filename\" value=\"environment.exr\"/>
-<transform name=\"to_world\"><rotate y=\"1\" angle=\"{turn}\"/></transform></emitter>
 <shape type=\"bsplinecurve\"><string name=\"filename\" value=\"hair.txt\"/>
 <bsdf type=\"hair\"><rgb name=\"sigma_a\" value=\"{}\"/>
 <float name=\"longitudinal_roughness\" value=\"{}\"/><float name=\"azimuthal_roughness\" value=\"{}\"/>
@@ -115,13 +115,61 @@ impl MitsubaScene<'_> {
             -hair.alpha_deg,
             hair.eta,
         );
+        // Mitsuba cannot draw from a black picture.
+        if self.environment.mean() != Rgb::ZERO {
+            let _ = write!(
+                xml,
+                "<emitter type=\"envmap\"><string name=\"filename\" value=\"environment.exr\"/>
+<transform name=\"to_world\"><rotate y=\"1\" angle=\"{turn}\"/></transform></emitter>\n"
+            );
+        }
         if self.skin.is_some() {
             xml += "<shape type=\"ply\"><string name=\"filename\" value=\"skin.ply\"/>
 <bsdf type=\"twosided\"><bsdf type=\"diffuse\"><texture type=\"mesh_attribute\" name=\"reflectance\">
 <string name=\"name\" value=\"vertex_color\"/></texture></bsdf></bsdf></shape>\n";
         }
+        xml.extend(self.lamps.iter().map(lamp));
         xml + "</scene>\n"
     }
+}
+
+/// Mitsuba has no disks at infinity: the sun is so far away, millimeters.
+const SUN_DISTANCE: f32 = 1e6;
+
+/// A lamp as a black body that shines.
+fn lamp(lamp: &Emitter) -> String {
+    let (kind, place) = match lamp.shape() {
+        EmitterShape::Rect {
+            center,
+            half: [across, up],
+            facing,
+        } => ("rectangle", matrix([across, up, facing, center])),
+        EmitterShape::Sphere { center, radius } => {
+            let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| axis * radius);
+            ("sphere", matrix([axes[0], axes[1], axes[2], center]))
+        }
+        EmitterShape::Sun { toward, sin } => {
+            let radius = SUN_DISTANCE * sin / (1.0 - sin * sin).sqrt();
+            let (x, y) = (-toward).any_orthonormal_pair();
+            let center = toward * SUN_DISTANCE;
+            ("disk", matrix([x * radius, y * radius, -toward, center]))
+        }
+    };
+    format!(
+        "<shape type=\"{kind}\"><transform name=\"to_world\"><matrix value=\"{place}\"/></transform>
+<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0\"/></bsdf>
+<emitter type=\"area\"><rgb name=\"radiance\" value=\"{}\"/></emitter></shape>\n",
+        triple(lamp.radiance())
+    )
+}
+
+/// Four columns, written by rows.
+fn matrix(columns: [Vec3; 4]) -> String {
+    let row = |i: usize| {
+        let numbers = columns.map(|c| c[i].to_string());
+        numbers.join(" ")
+    };
+    format!("{} {} {} 0 0 0 1", row(0), row(1), row(2))
 }
 
 fn triple(v: Vec3) -> String {

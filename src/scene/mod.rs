@@ -17,7 +17,7 @@ pub use camera::{Camera, View};
 pub use environment::{
     Environment, EnvironmentError, EnvironmentSample, Sun, load as load_environment,
 };
-pub use lamps::{Emitter, Lamp, LampChoice, LampSample, LampShape, MOST_LAMPS};
+pub use lamps::{Emitter, EmitterShape, Lamp, LampChoice, LampSample, LampShape, MOST_LAMPS};
 pub use ribbon::Segment;
 pub use strands::{Leaving, StrandHit, Strands};
 pub use surface::{Surface, SurfaceHit};

@@ -90,6 +90,24 @@ fn only_files_with_a_species_are_scenes() {
 }
 
 #[test]
+fn scenes_of_the_examples_are_read() {
+    for folder in ["examples/scenes", "benches/peers"] {
+        let entries = std::fs::read_dir(folder).unwrap();
+        let paths = entries.map(|entry| entry.unwrap().path());
+        let scenes: Vec<_> = paths
+            .filter(|p| p.extension().is_some_and(|e| e == "toml"))
+            .collect();
+        assert!(!scenes.is_empty(), "{folder}");
+        for path in scenes {
+            let scene = SceneFile::read(path.to_str().unwrap()).unwrap().unwrap();
+            assert!(
+                !scene.lamps.is_empty() && crate::species::load(&scene.species, &scene.set).is_ok()
+            );
+        }
+    }
+}
+
+#[test]
 fn what_is_wrong_is_said_with_its_key() {
     for (from, to, complaint) in [
         (

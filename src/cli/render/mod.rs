@@ -109,6 +109,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
             hair: &args.chiang,
             skin: Some((&skin, color)),
             environment: &scene.environment,
+            lamps: &scene.lamps,
             camera: &scene.camera(width as f32 / height as f32),
             job: &job,
         }

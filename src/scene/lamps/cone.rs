@@ -25,9 +25,13 @@ impl Cone {
     }
 
     /// The direction of its middle.
-    #[cfg(test)]
     pub(super) fn axis(&self) -> DVec3 {
         self.axis
+    }
+
+    /// Sine of half its opening.
+    pub(super) fn sin(&self) -> f64 {
+        self.sin2.sqrt()
     }
 
     /// Steradians.

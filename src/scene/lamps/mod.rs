@@ -62,6 +62,34 @@ pub struct Emitter {
     mean: Rgb,
 }
 
+/// What shines at its place, scene units.
+#[derive(Clone, Copy, Debug)]
+pub enum EmitterShape {
+    /// A rectangle.
+    Rect {
+        /// Its middle.
+        center: Vec3,
+        /// Half its width and half its height, as vectors.
+        half: [Vec3; 2],
+        /// Unit, to the side that shines: the cross product of the halves has this direction.
+        facing: Vec3,
+    },
+    /// A ball.
+    Sphere {
+        /// Its middle.
+        center: Vec3,
+        /// Its radius.
+        radius: f32,
+    },
+    /// A disk at infinite distance.
+    Sun {
+        /// Unit, to its middle.
+        toward: Vec3,
+        /// Sine of half the angle that it fills.
+        sin: f32,
+    },
+}
+
 /// Where light comes from. Double precision: lamps may be small and far away.
 #[derive(Clone, Copy, Debug)]
 enum Place {
@@ -147,6 +175,30 @@ impl Emitter {
             // All of it as if from one direction.
             mean: 0.25 * lamp.strength,
         })
+    }
+
+    /// Radiance of its surface.
+    pub fn radiance(&self) -> Rgb {
+        self.radiance
+    }
+
+    /// What shines.
+    pub fn shape(&self) -> EmitterShape {
+        match self.place {
+            Place::Rect(rect) => EmitterShape::Rect {
+                center: rect.center.as_vec3(),
+                half: [0, 1].map(|i| (rect.axes[i] * rect.half[i]).as_vec3()),
+                facing: rect.axes[2].as_vec3(),
+            },
+            Place::Sphere { center, radius } => EmitterShape::Sphere {
+                center: center.as_vec3(),
+                radius: radius as f32,
+            },
+            Place::Sun(cone) => EmitterShape::Sun {
+                toward: cone.axis().as_vec3(),
+                sin: cone.sin() as f32,
+            },
+        }
     }
 
     /// Mean radiance over all directions, in the middle of the subject, roughly.

@@ -158,6 +158,24 @@ fn strength_is_the_light_in_the_middle() {
     }
 }
 
+/// The rectangle looks at the subject, and its halves turn to where it shines.
+#[test]
+fn rectangles_face_the_subject() {
+    for lamp in lamps() {
+        if let EmitterShape::Rect {
+            center,
+            half: [across, up],
+            facing,
+        } = lamp.shape()
+        {
+            let normal = across.cross(up).normalize();
+            assert!(normal.distance(facing) < 1e-5, "{normal} {facing}");
+            assert!((CENTER - center).normalize().distance(facing) < 1e-5);
+            assert!(up.y >= 0.0, "{up}");
+        }
+    }
+}
+
 #[test]
 fn lamps_without_size_or_around_the_subject_are_refused() {
     let placed = |shape| {
