@@ -1,8 +1,10 @@
 //! Everything that a renderer needs, resolved and immutable. Scene units are millimeters.
 
+mod backdrop;
 mod camera;
 mod environment;
 mod flatten;
+mod ground;
 mod joints;
 mod lamps;
 mod ribbon;
@@ -13,10 +15,12 @@ mod tree;
 pub use crate::accel::Ray;
 
 use crate::accel::AccelError;
+pub use backdrop::Backdrop;
 pub use camera::{Camera, View};
 pub use environment::{
     Environment, EnvironmentError, EnvironmentSample, Sun, load as load_environment,
 };
+pub use ground::Ground;
 pub use lamps::{Emitter, EmitterShape, Lamp, LampChoice, LampSample, LampShape, MOST_LAMPS};
 pub use ribbon::Segment;
 pub use strands::{Leaving, StrandHit, Strands};
@@ -28,97 +32,6 @@ use crate::color::Rgb;
 use crate::groom::Groom;
 use crate::skin::Skin;
 use glam::{Vec3, Vec4Swizzles};
-
-/// What the camera sees where there is no subject. It gives no light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Backdrop {
-    /// The environment itself.
-    Environment,
-    /// One color.
-    Plain(Rgb),
-    /// Studio paper with a pool of light behind the subject: from one color in the middle of the
-    /// picture to another at its corners.
-    Glow {
-        /// Radiance in the middle.
-        center: Rgb,
-        /// Radiance at the corners.
-        edge: Rgb,
-    },
-}
-
-impl Default for Backdrop {
-    fn default() -> Self {
-        Self::Glow {
-            center: Rgb::new(0.42, 0.43, 0.45),
-            edge: Rgb::new(0.10, 0.105, 0.115),
-        }
-    }
-}
-
-impl Backdrop {
-    /// Radiance seen through a point of the picture.
-    ///
-    /// * `at`: 0..1 from the left and from the top.
-    pub fn radiance(&self, environment: &Environment, dir: Vec3, at: [f32; 2]) -> Rgb {
-        match self {
-            Self::Environment => environment.smooth(dir),
-            Self::Plain(color) => *color,
-            Self::Glow { center, edge } => {
-                let (x, y) = (2.0 * at[0] - 1.0, 2.0 * at[1] - 0.9);
-                let far = (0.5 * (x * x + y * y)).clamp(0.0, 1.0);
-                center.lerp(*edge, far * (2.0 - far))
-            }
-        }
-    }
-}
-
-/// A level floor under the subject. The camera sees the backdrop on it, darkened where the subject
-/// takes light away, so that floor and backdrop join without a seam; other rays see matte paint.
-#[derive(Clone, Debug)]
-pub struct Ground {
-    /// Reflectance toward the subject, 0..1.
-    pub reflectance: f32,
-    height: f32,
-    /// Middle of the subject, and the distance from it where the floor begins to be plain backdrop.
-    center: Vec3,
-    reach: f32,
-    /// Radiance of white paint on the floor if there were no subject.
-    open: Rgb,
-    /// The environment times cosine, to draw directions from.
-    light: Environment,
-}
-
-impl Ground {
-    /// Draws a direction by the product of environment and cosine; gives it and the radiance that
-    /// white paint sends on by it, nearly the same ([`Ground::open`]) for all. `None` in the dark.
-    ///
-    /// * `environment`: the one the scene was built with.
-    pub fn sample(&self, environment: &Environment, u: [f32; 2]) -> Option<(Vec3, Rgb)> {
-        let sample = self.light.sample(u)?;
-        let cos = sample.dir.y.max(0.0) * std::f32::consts::FRAC_1_PI;
-        Some((
-            sample.dir,
-            environment.eval(sample.dir).0 * (cos / sample.pdf),
-        ))
-    }
-
-    /// Radiance of white paint that sees the whole upper half of the environment, and no lamps.
-    pub fn open(&self) -> Rgb {
-        self.open
-    }
-
-    /// How much of the subject's shadow is shown at a point of the floor: 1 near, 0 far away, where
-    /// it is below a hundredth and only its noise would be seen.
-    pub fn shadow_share(&self, point: Vec3) -> f32 {
-        let t = (point.distance(self.center) / self.reach - 1.0).clamp(0.0, 1.0);
-        1.0 - t * t * (3.0 - 2.0 * t)
-    }
-
-    fn hit(&self, ray: &Ray, limit: f32) -> Option<f32> {
-        let t = (self.height - ray.origin.y) / ray.dir.y;
-        (ray.dir.y < 0.0 && ray.origin.y > self.height && t < limit).then_some(t)
-    }
-}
 
 /// What a scene is made of.
 pub struct SceneParts<'a> {
