@@ -6,11 +6,11 @@ use crate::skin::{self, Placing, Skin, SkinError, Up};
 /// The skin and how its file is meant.
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct SkinArgs {
-    /// What the fur grows on: body, ball, swatch, tress, or an OBJ, PLY or glTF mesh; body if not
-    /// given.
+    /// What the fur grows on: body, ball, swatch, tress, or an OBJ, PLY, glTF or USD mesh; body if
+    /// not given.
     #[arg(long)]
     skin: Option<String>,
-    /// What a unit of the skin's file is; m if not given.
+    /// What a unit of the skin's file is; m if not given. USD files say it themselves, and which axis is up.
     #[arg(long, value_enum)]
     skin_units: Option<UnitArg>,
     /// Which axis of the skin's file points up; y if not given.

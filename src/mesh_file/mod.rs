@@ -1,4 +1,4 @@
-//! Triangle meshes from files: Wavefront OBJ, Stanford PLY and glTF 2.0.
+//! Triangle meshes from files: Wavefront OBJ, Stanford PLY, glTF 2.0 and USD.
 //!
 //! In: a path or the bytes of a file. Out: triangles, indices in range and numbers finite, with
 //! the names of its parts; what it means is up to the caller. Nothing is allocated for a count before
@@ -12,6 +12,7 @@ mod ply;
 mod raw;
 #[cfg(test)]
 mod tests;
+mod usd;
 
 pub use error::MeshFileError;
 pub use loaded::LoadedMesh;
@@ -62,6 +63,21 @@ pub(crate) fn read(path: &Path) -> Result<RawMesh, MeshFileError> {
         });
     };
     parse(format, &name, &read_bounded(path, MAX_FILE)?)
+}
+
+/// Whether a name is that of a USD file.
+pub(crate) fn is_usd(path: &Path) -> bool {
+    let ending = path.extension().and_then(|e| e.to_str());
+    let ending = ending.unwrap_or_default().to_ascii_lowercase();
+    matches!(ending.as_str(), "usd" | "usda" | "usdc" | "usdz")
+}
+
+/// Reads all meshes of a USD file, in meters with Y up.
+pub(crate) fn read_usd(path: &Path) -> Result<RawMesh, MeshFileError> {
+    let name = path.to_string_lossy();
+    let mesh = usd::read(&name, &read_bounded(path, MAX_FILE)?)?;
+    mesh.check(&name)?;
+    Ok(mesh)
 }
 
 /// Reads the bytes of a mesh file. `file` is its path: for messages, and to find what lies beside it.

@@ -7,7 +7,7 @@ use crate::mesh_file::MeshFileError;
 #[derive(Debug, thiserror::Error)]
 pub enum SkinError {
     /// Neither a built-in name nor something that looks like a mesh file.
-    #[error("no skin named `{name}`: expected one of {} or a path to an .obj, .ply, .glb or .gltf file", super::BUILT_IN.join(", "))]
+    #[error("no skin named `{name}`: expected one of {} or a path to an .obj, .ply, .glb, .gltf, .usd, .usda, .usdc or .usdz file", super::BUILT_IN.join(", "))]
     UnknownName {
         /// What was asked for.
         name: String,

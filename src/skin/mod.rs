@@ -131,12 +131,17 @@ fn load_file(name: &str, placing: Placing) -> Result<Skin, SkinError> {
         return Err(SkinError::Unit { unit_m });
     }
     let path = Path::new(name);
-    if Format::of(path).is_none() {
+    let is_usd = mesh_file::is_usd(path);
+    if Format::of(path).is_none() && !is_usd {
         return Err(SkinError::UnknownName {
             name: name.to_owned(),
         });
     }
-    let mut mesh = mesh_file::read(path)?;
+    let mut mesh = if is_usd {
+        mesh_file::read_usd(path)?
+    } else {
+        mesh_file::read(path)?
+    };
     for p in &mut mesh.positions {
         *p = placing.place(*p);
     }

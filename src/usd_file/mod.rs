@@ -16,6 +16,7 @@ mod layer;
 mod lexer;
 mod text;
 mod text_values;
+mod transform;
 mod value;
 mod zip;
 
@@ -25,6 +26,7 @@ mod tests;
 pub use compose::{Files, Open, Unfollowed, compose, is_resolved_elsewhere};
 pub use error::UsdFileError;
 pub use layer::{Fields, Layer, Prim, Property, Specifier, VariantSet};
+pub(crate) use transform::{placed, to_meters};
 pub use value::{Reference, Value};
 pub use zip::{Member, members};
 
