@@ -41,6 +41,24 @@ pub enum MeshFileError {
 }
 
 impl MeshFileError {
+    /// Refuses more than `limit` of something.
+    pub(super) fn limit(
+        file: &str,
+        what: &'static str,
+        count: usize,
+        limit: u64,
+    ) -> Result<(), Self> {
+        if count as u64 <= limit {
+            return Ok(());
+        }
+        Err(Self::TooLarge {
+            file: file.to_owned(),
+            what,
+            count: count as u64,
+            limit,
+        })
+    }
+
     /// Who has to act.
     pub fn blame(&self) -> Blame {
         match self {

@@ -106,15 +106,7 @@ impl Reader<'_> {
     }
 
     fn limit(&self, what: &'static str, count: usize, limit: u64) -> Result<(), MeshFileError> {
-        if count as u64 <= limit {
-            return Ok(());
-        }
-        Err(MeshFileError::TooLarge {
-            file: self.file.to_owned(),
-            what,
-            count: count as u64,
-            limit,
-        })
+        MeshFileError::limit(self.file, what, count, limit)
     }
 
     fn numbers<'w, const N: usize>(

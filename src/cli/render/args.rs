@@ -19,7 +19,7 @@ use std::time::Duration;
   vair render red-fox --model chiang-fit -o shader.png
   vair render cat --coat leopard -o leopard.png
   vair render mink --skin sofa.obj --strands 1e6 -o sofa.png
-  vair render fox-at-dusk.toml --res 1280x720 -o dusk.png    # a scene file; see docs/scene.md
+  vair render examples/scenes/fox-by-a-window.toml --res 1280x720 -o window.png
   vair render red-fox --crop 200,150,64,64 --spp 256 -o eye.exr")]
 pub(in crate::cli) struct Args {
     /// A built-in species, a path to a species file, or a scene file, whose keys are options of this command.

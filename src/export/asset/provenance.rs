@@ -40,7 +40,10 @@ pub(super) fn asset_info<'a>(parts: &Parts<'_>, file: &str) -> Dictionary<'a> {
 /// Everything that makes the same groom again.
 pub(super) fn recipe<'a>(parts: &Parts<'_>) -> Dictionary<'a> {
     let species = parts.species;
+    let accounts = parts.groom.classes.iter().zip(&parts.groom.accounts);
+    let accounts = accounts.map(|(class, account)| (identifier(class), told(account)));
     let mut entries = vec![
+        ("follicles", sorted(accounts)),
         ("program", Value::string(PROGRAM)),
         ("seed", Value::string(parts.seed.to_string())),
         ("skin", Value::string(&parts.skin.name)),
@@ -49,15 +52,12 @@ pub(super) fn recipe<'a>(parts: &Parts<'_>) -> Dictionary<'a> {
         ("species_text", Value::string(&species.text)),
         ("strands", Value::Int(parts.groom.strands() as i32)),
     ];
-    let accounts = parts.groom.classes.iter().zip(&parts.groom.accounts);
-    let accounts = accounts.map(|(class, account)| (identifier(class), told(account)));
-    entries.insert(0, ("follicles", sorted(accounts)));
     if !parts.coats.is_empty() {
         let names: Vec<&str> = parts.coats.iter().map(|coat| coat.name).collect();
-        entries.insert(0, ("coats", Value::string(names.join(" "))));
+        entries.push(("coats", Value::string(names.join(" "))));
     }
     let entries = entries.into_iter().map(|(k, v)| (k.to_owned(), v));
-    vec![("vair".to_owned(), Value::Dictionary(entries.collect()))]
+    vec![("vair".to_owned(), sorted(entries))]
 }
 
 /// How many hairs of a class were asked for, how many grew, and why others did not or not as asked.
