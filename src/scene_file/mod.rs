@@ -85,7 +85,10 @@ impl SceneFile {
         if !is_toml {
             return Ok(None);
         }
-        let text = recipe::read(path)?;
+        // Whoever reads species files says why one cannot be read; they may be longer than scenes.
+        let Ok(text) = recipe::read(path) else {
+            return Ok(None);
+        };
         if !tree::parse(&text).is_ok_and(|root| root.get("species").is_some()) {
             return Ok(None);
         }

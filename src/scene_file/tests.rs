@@ -87,6 +87,10 @@ fn only_files_with_a_species_are_scenes() {
     std::fs::write(&path, crate::species::LIBRARY[0].1).unwrap();
     assert_eq!(SceneFile::read(name).unwrap(), None);
     assert_eq!(SceneFile::read("mink").unwrap(), None);
+    let long = format!("{}#{}", crate::species::LIBRARY[0].1, "x".repeat(300_000));
+    std::fs::write(&path, long).unwrap();
+    assert_eq!(SceneFile::read(name).unwrap(), None);
+    assert!(crate::species::load(name, &[]).is_ok());
 }
 
 #[test]
