@@ -78,6 +78,56 @@ impl Clumps {
     }
 }
 
+/// Tufts whose size varies over the skin.
+///
+/// One grid of a size that changes from place to place would tear its tufts. So there is a grid for each of
+/// some sizes between the smallest and the largest, and a hair belongs to one of the two next to the size
+/// at its root, by chance: the sizes of tufts pass into each other hair by hair.
+pub(super) struct Tufts {
+    levels: Vec<Clumps>,
+}
+
+/// Sizes of neighboring grids are to each other as this at most.
+const STEP: f32 = 2.0;
+/// Most grids less one.
+const MAX_STEPS: f32 = 16.0;
+
+impl Tufts {
+    /// * `sizes`: the smallest and the largest that there are, meters.
+    pub(super) fn new([least, most]: [f32; 2], seed: u64) -> Self {
+        let steps = (most / least).log(STEP).ceil().clamp(0.0, MAX_STEPS);
+        let size = |k: usize| match k as f32 {
+            k if k == steps => most,
+            k => least * (most / least).powf(k / steps),
+        };
+        let level = |k| Clumps {
+            size: size(k),
+            seed,
+        };
+        Self {
+            levels: (0..=steps as usize).map(level).collect(),
+        }
+    }
+
+    /// The tuft that owns a hair.
+    ///
+    /// * `size`: of tufts there, meters. * `luck`: any bits, of the hair.
+    pub(super) fn at(&self, position: Vec3, size: f32, luck: u64) -> Clump {
+        let after = self.levels.partition_point(|level| level.size < size);
+        let after = after.min(self.levels.len() - 1);
+        let before = after.saturating_sub(1);
+        let [small, large] = [before, after].map(|k| self.levels[k].size);
+        let share = if large > small {
+            (size / small).ln() / (large / small).ln()
+        } else {
+            1.0
+        };
+        let luck = (luck >> 40) as f32 / (1u32 << 24) as f32;
+        let level = if luck < share { after } else { before };
+        self.levels[level].at(position)
+    }
+}
+
 /// Four numbers in [-1, 1) from 64 bits.
 fn signed(bits: u64) -> glam::Vec4 {
     let at = |shift: u32| ((bits >> shift) as u16) as f32 / 32_768.0 - 1.0;

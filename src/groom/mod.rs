@@ -10,6 +10,7 @@ mod cover;
 mod error;
 mod field;
 mod follicle;
+mod here;
 mod near;
 mod noise;
 mod plan;
@@ -28,6 +29,7 @@ mod vary;
 #[cfg(test)]
 mod vary_tests;
 mod walk;
+mod waves;
 
 pub use account::Account;
 pub(crate) use cover::widenings;
@@ -36,7 +38,7 @@ pub use plan::{DEFAULT_STRANDS, MAX_CLASSES, MAX_STRANDS};
 
 use crate::progress::{Cancel, Progress};
 use crate::skin::Skin;
-use crate::species::Species;
+use crate::species::{Species, VaryWhat};
 use coat::Coat;
 use comb::Comb;
 use field::Field;
@@ -241,19 +243,21 @@ pub fn grow(
     };
     for (class, scattered) in scattered.iter().enumerate() {
         let follicles = &scattered.follicles;
-        let variation = Variation::new(&species.classes[class].groom.vary, settings.seed);
+        let class_groom = &species.classes[class].groom;
+        let variation = Variation::new(&class_groom.vary, settings.seed);
         let vary_of = |follicle: &Follicle| variation.at(follicle.position, surface.uv(follicle));
-        let diameter = species.classes[class].groom.diameter_um;
-        let shortest = (diameter * 1e-3 / species.classes[class].groom.length_mm) as f32;
+        let thick = (class_groom.diameter_um * 1e-6) as f32;
+        let shortest = (class_groom.diameter_um * 1e-3 / class_groom.length_mm) as f32;
         let fates: Vec<Fate> = (follicles.par_iter().enumerate())
             .with_min_len(1024)
             .map(|(rank, follicle)| {
                 let vary = vary_of(follicle);
-                if surface.length(follicle) * vary.length <= shortest {
+                let cut = here::trim(class_groom, &vary) <= thick;
+                if cut || surface.length(follicle) * vary[VaryWhat::Length] <= shortest {
                     Fate::Short
-                } else if vary.width <= 0.0 {
+                } else if vary[VaryWhat::Width] <= 0.0 {
                     Fate::Thin
-                } else if !variation.grows(id_of(class, rank), vary.density) {
+                } else if !variation.grows(id_of(class, rank), vary[VaryWhat::Density]) {
                     Fate::Sparse
                 } else {
                     Fate::Grown
@@ -272,13 +276,17 @@ pub fn grow(
         };
         groom
             .warnings
+            .extend(variation.idle(&groom.classes[class], class_groom, comb.is_some()));
+        groom
+            .warnings
             .extend(account.missing(&groom.classes[class]));
         groom
             .warnings
             .extend(scattered.crowding(&groom.classes[class], skin));
         let width_scale = plan[class].width_scale;
         let grower = Grower::new(
-            &species.classes[class].groom,
+            class_groom,
+            &variation,
             skin,
             field.as_ref(),
             comb.as_ref(),
@@ -317,8 +325,12 @@ pub fn grow(
                     let mut root = surface.root(follicle);
                     root.vary = vary_of(follicle);
                     if let Some(comb) = &comb {
-                        root.combing =
-                            comb.lay(root.position, root.normal, root.lay, root.vary.comb);
+                        root.combing = comb.lay(
+                            root.position,
+                            root.normal,
+                            root.lay,
+                            root.vary[VaryWhat::Comb],
+                        );
                     }
                     if let Some(coat) = &coat {
                         let (zone, hair) = coat.choose(id, root.position, root.normal, &mut near);

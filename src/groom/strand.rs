@@ -1,12 +1,15 @@
 //! The shape of one hair.
 
-use super::clump::Clumps;
+use super::clump::Tufts;
 use super::comb::Comb;
 use super::field::Field;
 use super::follicle::Root;
+use super::here::{Here, Profile, size};
+use super::vary::{Variation, Varied};
+use super::waves::{Crimp, Curl, Frizz};
 use crate::sampling::{Rng, hash64};
 use crate::skin::Skin;
-use crate::species::ClassGroom;
+use crate::species::{ClassGroom, VaryWhat};
 use glam::{Quat, Vec3};
 use noise::{NoiseFn, OpenSimplex};
 use std::f32::consts::{FRAC_PI_2, TAU};
@@ -44,23 +47,12 @@ const TUFT_LEAN: f32 = 0.14;
 const TUFT_LENGTH: f32 = 0.07;
 /// How the pull of a clump grows from root to tip: 0 evenly, 1 mostly near the root.
 const CLUMP_RATE: f32 = 0.4;
-/// Control points that carry one wave of crimp. Fewer and it vanishes between the points.
-const POINTS_PER_WAVE: f32 = 3.0;
-/// Largest crimp amplitude relative to length.
-const CRIMP_LIMIT: f32 = 0.06;
 /// Hair of a length factor f is finer by f to this power.
 const FINER: f32 = 0.2;
-/// How much closer wet hair clings: at full wetness clumps are this many times as large, and of its
-/// emergence, bend and straying this share is left.
-const WET_CLUMP: f32 = 3.0;
+/// Of its emergence, bend and straying wet hair has this share left at full wetness.
 const WET_LIFT: f32 = 0.35;
-/// Waves of frizz along a hair.
-const FRIZZ_WAVES: f32 = 2.2;
 /// Hair pressed to the ground stays this far above it, meters.
 const GROUND_GAP: f32 = 4e-4;
-/// Exponent of the tip's taper, and the width left at the very tip.
-const TAPER: f64 = 1.5;
-const TIP: f64 = 0.08;
 
 /// Control points of each strand of a class.
 pub(super) fn points_of(class: &ClassGroom) -> usize {
@@ -81,28 +73,32 @@ pub(super) struct Grower<'a> {
     comb: Option<&'a Comb>,
     seed: u64,
     drift: OpenSimplex,
-    clumps: Clumps,
-    locks: Clumps,
+    clumps: Tufts,
+    locks: Tufts,
     /// Position along the hair of each control point, 0 root .. 1 tip.
     zetas: Vec<f32>,
-    profile: Vec<f32>,
+    /// Where nothing varies it.
+    profile: Profile,
+    /// Its diameter at each control point, meters.
+    diameters: Vec<f32>,
     /// Meters.
     widest: f32,
 }
 
 /// What is random about one strand.
-struct Luck {
+pub(super) struct Luck {
     length: f32,
     width: f32,
     turn: f32,
     lift: f32,
-    phase: f32,
+    /// Of the crimp.
+    pub(super) phase: f32,
     /// Of the plane of the crimp.
-    roll: f32,
+    pub(super) roll: f32,
     /// Of the section.
     side: f32,
     /// Phases of the frizz.
-    frizz: [f32; 2],
+    pub(super) frizz: [f32; 2],
 }
 
 impl<'a> Grower<'a> {
@@ -110,6 +106,7 @@ impl<'a> Grower<'a> {
     /// * `comb`: what the lay follows beside the skin.
     pub(super) fn new(
         class: &'a ClassGroom,
+        variation: &Variation<'_>,
         skin: &Skin,
         field: Option<&'a Field>,
         comb: Option<&'a Comb>,
@@ -123,11 +120,11 @@ impl<'a> Grower<'a> {
             .map(|k| (k as f32 / (points - 1) as f32).powf(crowding))
             .collect();
         let widest = class.diameter_um * 1e-6 * width_scale;
-        let profile = (zetas.iter())
-            .map(|&zeta| (widest * profile(class, f64::from(zeta))) as f32)
+        let profile = Profile::new(class, &Varied::NONE);
+        let diameters = (zetas.iter())
+            .map(|&zeta| (widest * profile.at(f64::from(zeta))) as f32)
             .collect();
-        let size = (class.clump_mm * 1e-3).max(1e-4) as f32;
-        let size = size * (1.0 + (WET_CLUMP - 1.0) * class.wet as f32);
+        let sizes = variation.ends().map(|end| size(class, &end));
         Self {
             class,
             gravity: skin.gravity.clamp(0.0, 1.0),
@@ -136,16 +133,11 @@ impl<'a> Grower<'a> {
             comb,
             seed,
             drift: OpenSimplex::new(hash64(seed ^ 0x6472_6966) as u32),
-            clumps: Clumps {
-                size,
-                seed: hash64(seed ^ 0x636c_756d),
-            },
-            locks: Clumps {
-                size: LOCK * size,
-                seed: hash64(seed ^ 0x6c6f_636b),
-            },
+            clumps: Tufts::new(sizes, hash64(seed ^ 0x636c_756d)),
+            locks: Tufts::new(sizes.map(|size| LOCK * size), hash64(seed ^ 0x6c6f_636b)),
             zetas,
             profile,
+            diameters,
             widest: widest as f32,
         }
     }
@@ -155,29 +147,23 @@ impl<'a> Grower<'a> {
         self.zetas.len()
     }
 
-    /// Factor on how far hair stands off when wet.
-    fn dry(&self) -> f32 {
-        1.0 - (1.0 - WET_LIFT) * self.class.wet as f32
-    }
-
-    fn luck(&self, id: u32) -> Luck {
+    fn luck(&self, id: u32, here: &Here) -> Luck {
         let mut rng = Rng::new(hash64(self.seed ^ 0x6861_6972), u64::from(id));
-        let class = self.class;
         // Mean 1: the log-normal's median is below its mean.
         let log_normal = |sigma: f64, normal: f64| {
             (sigma * normal.clamp(-3.0, 3.0) - 0.5 * sigma * sigma).exp() as f32
         };
         let (a, b) = rng.normal_pair();
         let (c, d) = rng.normal_pair();
-        let stray = class.stray_deg.to_radians() * f64::from(self.dry());
+        let stray = here.stray * f64::from(dry(here));
         Luck {
-            length: log_normal(class.length_sigma, a),
-            width: log_normal(class.diameter_sigma, b),
+            length: log_normal(here.sigmas[0], a),
+            width: log_normal(here.sigmas[1], b),
             turn: (stray * c) as f32,
             lift: (0.5 * stray * d) as f32,
             phase: rng.uniform_f32() * TAU,
             roll: rng.uniform_f32() * TAU,
-            side: (class.roll_deg.to_radians() * rng.normal_pair().0) as f32,
+            side: (here.roll * rng.normal_pair().0) as f32,
             frizz: [rng.uniform_f32() * TAU, rng.uniform_f32() * TAU],
         }
     }
@@ -191,29 +177,29 @@ impl<'a> Grower<'a> {
         points: &mut [Vec3],
         widths: &mut [f32],
     ) -> Vec3 {
-        let class = self.class;
-        let luck = self.luck(id);
-        let clump = self.clumps.at(root.position);
-        let lock = self.locks.at(root.position);
+        let here = Here::new(self.class, &root.vary);
+        let luck = self.luck(id, &here);
+        let tuft_luck = hash64(self.seed ^ hash64(u64::from(id) ^ 0x7475_6674));
+        let clump = self.clumps.at(root.position, here.size, tuft_luck);
+        let lock = self.locks.at(root.position, LOCK * here.size, tuft_luck);
         let drift = |offset: f64| {
             let p = root.position.as_dvec3() / DRIFT_SCALE + offset;
             self.drift.get(p.to_array()) as f32
         };
-        let length = class.length_mm as f32
-            * 1e-3
+        let length = here.length
             * root.length
-            * root.vary.length
+            * root.vary[VaryWhat::Length]
             * luck.length
             * (1.0 + DRIFT_LENGTH * drift(0.0))
             * (1.0 + TUFT_LENGTH * lock.random[0]);
         let whole = length;
-        let length = length.min(class.trim_mm as f32 * 1e-3);
-        let shared_turn = root.vary.turn + DRIFT_TURN * drift(40.0) + TUFT_LEAN * lock.random[1];
+        let length = length.min(here.trim);
+        let shared_turn =
+            root.vary[VaryWhat::Turn] + DRIFT_TURN * drift(40.0) + TUFT_LEAN * lock.random[1];
         let shared_lift = 0.5 * TUFT_LEAN * lock.random[2];
 
         // Two curves: the hair by itself, and what it would be without straying from its tuft.
-        let emergence = class.emergence_deg.to_radians() as f32 * root.vary.tilt;
-        let emergence = emergence * self.dry() + shared_lift;
+        let emergence = here.emergence * dry(&here) + shared_lift;
         let lean = |turn: f32, lift: f32| Lean {
             turn,
             combing: Quat::from_axis_angle(root.normal, turn) * root.combing,
@@ -225,23 +211,23 @@ impl<'a> Grower<'a> {
         let to_clump = tangential(clump.center - root.position);
         let to_lock = tangential(lock.center - root.position);
         // A shorter hair has less way to its neighbors.
-        let share = (class.clump as f32 * root.vary.clump).min(1.0) * root.length.min(1.0);
-        let share = share + 0.9 * class.wet as f32 * (1.0 - share);
+        let share = here.clump * root.length.min(1.0);
+        let share = share + 0.9 * here.wet * (1.0 - share);
         let pull = (share * (1.0 + 0.4 * clump.random[3])).clamp(0.0, 1.0);
         // Wet hair sticks to its neighbors, not to a whole lock.
-        let share = share * (1.0 - class.wet as f32);
+        let share = share * (1.0 - here.wet);
         let lock_pull = (LOCK_PULL * share * (1.0 + 0.4 * lock.random[3])).clamp(0.0, 1.0);
 
         let (mut hair, mut center) = (root.position, root.position);
         let step = length / (self.points() - 1) as f32;
-        let crimp = Crimp::new(class, length, step, &luck);
-        let curl = Curl::new(class, step, clump.random[2], root.vary.curl);
-        let frizz = Frizz::new(class, root, &luck);
+        let crimp = Crimp::new(&here, length, step, &luck);
+        let curl = Curl::new(&here, step, clump.random[2]);
+        let frizz = Frizz::new(&here, root, &luck);
         points[0] = root.position;
         for k in 0..self.points() - 1 {
             let (from, zeta) = (self.zetas[k], self.zetas[k + 1]);
-            hair = self.step(hair, root, &own, [from, zeta], length);
-            center = self.step(center, root, &tuft, [from, zeta], length);
+            hair = self.step(hair, root, &here, &own, [from, zeta], length);
+            center = self.step(center, root, &here, &tuft, [from, zeta], length);
             let weight = clump_weight(zeta);
             let toward = pull * weight * (center + to_clump - hair) + lock_pull * weight * to_lock;
             let point = hair
@@ -252,14 +238,15 @@ impl<'a> Grower<'a> {
             points[k + 1] = self.lift(point, root, zeta * length);
         }
         // Finer where it is shorter, as on faces and paws.
-        let finer = root.length.clamp(0.05, 1.0).powf(FINER) * root.vary.width;
-        for (width, profile) in widths.iter_mut().zip(&self.profile) {
-            *width = profile * luck.width * finer;
+        let finer = root.length.clamp(0.05, 1.0).powf(FINER) * root.vary[VaryWhat::Width];
+        for (width, diameter) in widths.iter_mut().zip(&self.diameters) {
+            *width = diameter * luck.width * finer;
         }
+        let profile = Profile::new(self.class, &root.vary);
         // What is left of a cut hair has the profile that it had there.
-        if whole > length {
+        if whole > length || profile != self.profile {
             for (width, &zeta) in widths.iter_mut().zip(&self.zetas) {
-                let there = profile(class, f64::from(zeta * length / whole)) as f32;
+                let there = profile.at(f64::from(zeta * length / whole)) as f32;
                 *width = self.widest * there * luck.width * finer;
             }
         }
@@ -279,9 +266,17 @@ impl<'a> Grower<'a> {
     /// Goes from `from` one segment on. The hair leaves at the emergence angle and bends toward the
     /// lay, which follows the skin below and turns downhill a little; hanging hair turns straight
     /// down.
-    fn step(&self, from: Vec3, root: &Root, lean: &Lean, zetas: [f32; 2], length: f32) -> Vec3 {
+    fn step(
+        &self,
+        from: Vec3,
+        root: &Root,
+        here: &Here,
+        lean: &Lean,
+        zetas: [f32; 2],
+        length: f32,
+    ) -> Vec3 {
         let middle = 0.5 * (zetas[0] + zetas[1]);
-        let bend = self.class.bend_deg.to_radians() as f32 * self.dry();
+        let bend = here.bend * dry(here);
         let angle = (lean.emergence - bend * middle).max(LOWEST);
         let (mut normal, mut combing) = (root.normal, lean.combing);
         let field = self.field.filter(|field| length > 2.0 * field.cell());
@@ -295,15 +290,16 @@ impl<'a> Grower<'a> {
         if let Some(comb) = self.comb {
             // Hair follows a curve or whorl along its whole length.
             let lay = Quat::from_rotation_arc(root.normal, normal) * root.lay;
-            let lay = comb.lay(from, normal, lay, root.vary.comb);
+            let lay = comb.lay(from, normal, lay, root.vary[VaryWhat::Comb]);
             combing = Quat::from_axis_angle(normal, lean.turn) * lay;
         }
         let downhill = normal * normal.y - Vec3::Y;
-        let lay = (combing + SAG * middle * downhill).normalize_or(combing);
+        let lay = (combing + here.gravity * SAG * middle * downhill).normalize_or(combing);
         let (sin, cos) = angle.sin_cos();
         let mut direction = lay * cos + normal * sin;
         if self.gravity > 0.0 {
-            let hang = self.gravity * (1.0 - (-(middle * length / HANG).powi(2)).exp());
+            let hang = (here.gravity * self.gravity).min(1.0)
+                * (1.0 - (-(middle * length / HANG).powi(2)).exp());
             direction = direction.lerp(Vec3::NEG_Y, hang).normalize_or(direction);
         }
         from + direction * (length * (zetas[1] - zetas[0]))
@@ -327,110 +323,17 @@ impl<'a> Grower<'a> {
     }
 }
 
-struct Lean {
+/// How a hair leans at its root.
+pub(super) struct Lean {
     /// From the lay, about the normal, radians.
     turn: f32,
-    combing: Vec3,
+    pub(super) combing: Vec3,
     emergence: f32,
 }
 
-/// The waves of an undercoat hair.
-struct Crimp {
-    amplitude: f32,
-    wavenumber: f32,
-    phase: f32,
-    roll: f32,
-}
-
-impl Crimp {
-    /// Where control points are too far apart for the wavelength, the wave is stretched along and
-    /// across alike: its slope, and so the spread of directions that light meets, stays.
-    fn new(class: &ClassGroom, length: f32, step: f32, luck: &Luck) -> Self {
-        let natural = class.crimp_wavelength_mm as f32 * 1e-3;
-        let wavelength = natural.max(POINTS_PER_WAVE * step);
-        let stretch = if natural > 0.0 {
-            wavelength / natural
-        } else {
-            0.0
-        };
-        Self {
-            amplitude: (class.crimp_mm as f32 * 1e-3 * stretch).min(CRIMP_LIMIT * length),
-            wavenumber: TAU / wavelength.max(1e-6),
-            phase: luck.phase,
-            roll: luck.roll,
-        }
-    }
-
-    fn offset(&self, lean: &Lean, root: &Root, along: f32) -> Vec3 {
-        if self.amplitude == 0.0 {
-            return Vec3::ZERO;
-        }
-        // The first half wave grows from nothing: the hair stays in its follicle.
-        let grown = (along * self.wavenumber / (0.5 * TAU)).min(1.0);
-        let wave = (along * self.wavenumber + self.phase).sin();
-        let (sin, cos) = self.roll.sin_cos();
-        let across = lean.combing.cross(root.normal) * cos + root.normal * (0.5 * sin);
-        across * (self.amplitude * grown * wave)
-    }
-}
-
-/// The helix of a curl, the same for all hairs of a clump: they curl as one.
-struct Curl {
-    radius: f32,
-    wavenumber: f32,
-    phase: f32,
-}
-
-impl Curl {
-    /// * `phase`: -1..1, of the clump. * `factor`: on the radius.
-    fn new(class: &ClassGroom, step: f32, phase: f32, factor: f32) -> Self {
-        // As for the crimp: stretched along and across where points are too few.
-        let natural = class.curl_pitch_mm as f32 * 1e-3;
-        let pitch = natural.max(POINTS_PER_WAVE * step);
-        Self {
-            radius: class.curl_mm as f32 * 1e-3 * factor * (pitch / natural),
-            wavenumber: TAU / pitch,
-            phase: phase * 0.5 * TAU,
-        }
-    }
-
-    fn offset(&self, lean: &Lean, root: &Root, along: f32) -> Vec3 {
-        if self.radius == 0.0 {
-            return Vec3::ZERO;
-        }
-        let grown = (along * self.wavenumber / TAU).min(1.0);
-        let (sin, cos) = (along * self.wavenumber + self.phase).sin_cos();
-        let across = lean.combing.cross(root.normal);
-        (across * cos + root.normal * sin) * (self.radius * grown)
-    }
-}
-
-/// The wandering of a single hair: a slow wave in each of two directions, growing toward the tip.
-struct Frizz {
-    across: [Vec3; 2],
-    amplitude: f32,
-    phases: [f32; 2],
-}
-
-impl Frizz {
-    fn new(class: &ClassGroom, root: &Root, luck: &Luck) -> Self {
-        Self {
-            across: [root.combing.cross(root.normal), root.normal],
-            amplitude: class.frizz_mm as f32 * 1e-3 * root.vary.frizz,
-            phases: luck.frizz,
-        }
-    }
-
-    fn offset(&self, zeta: f32) -> Vec3 {
-        if self.amplitude == 0.0 {
-            return Vec3::ZERO;
-        }
-        let wave = |k: usize| {
-            let turns = FRIZZ_WAVES * zeta * (1.0 - 0.35 * k as f32);
-            (TAU * turns + self.phases[k]).sin()
-        };
-        (self.across[0] * wave(0) + self.across[1] * wave(1)) * (self.amplitude * zeta)
-    }
+/// Factor on how far hair stands off when wet.
+fn dry(here: &Here) -> f32 {
+    1.0 - (1.0 - WET_LIFT) * here.wet
 }
 
 /// A tangent turned with its normal, the shortest way.
@@ -444,17 +347,4 @@ fn carried(tangent: Vec3, from: Vec3, to: Vec3) -> Vec3 {
 fn clump_weight(zeta: f32) -> f32 {
     let inverse = 1.0 - zeta;
     zeta * (1.0 - CLUMP_RATE) + CLUMP_RATE * (1.0 - inverse * inverse)
-}
-
-/// Diameter at `zeta` over the widest: a thin stalk, the shield, a tapering tip.
-fn profile(class: &ClassGroom, zeta: f64) -> f64 {
-    let [from, to] = class.shield;
-    let t = if to > from {
-        ((zeta - from) / (to - from)).clamp(0.0, 1.0)
-    } else {
-        f64::from(u8::from(zeta >= from))
-    };
-    let body = class.stalk + (1.0 - class.stalk) * t * t * (3.0 - 2.0 * t);
-    let past = ((zeta - class.taper_from) / (1.0 - class.taper_from).max(1e-6)).clamp(0.0, 1.0);
-    body * (1.0 - past.powf(TAPER)).sqrt().max(TIP)
 }

@@ -61,6 +61,7 @@ pub(super) fn fox() -> Species {
         taper_from: 0.7,
         emergence_deg: 40.0,
         bend_deg: 30.0,
+        gravity: 1.0,
         stray_deg: 6.0,
         roll_deg: 90.0,
         crimp_mm: 0.0,

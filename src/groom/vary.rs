@@ -2,48 +2,41 @@
 
 use super::noise::Fractal;
 use crate::sampling::hash64;
-use crate::species::{Vary, VaryBy, VaryWhat};
+use crate::species::{ClassGroom, Vary, VaryBy, VaryWhat};
 use glam::{Vec2, Vec3};
+use std::ops::Index;
 
 /// Noise times this, or it would seldom come near its ends; beyond them it is cut.
 const CONTRAST: f32 = 1.5;
 
-/// What varies at one root.
+/// What varies at one root: a factor for each number, but for [`VaryWhat::Turn`] an angle in radians.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Varied {
-    /// Factor on the length.
-    pub(super) length: f32,
-    /// Factor on the diameter.
-    pub(super) width: f32,
-    /// Share of the hairs that grow.
-    pub(super) density: f32,
-    /// Factor on the radius of curls.
-    pub(super) curl: f32,
-    /// Factor on the pull of clumps.
-    pub(super) clump: f32,
-    /// Factor on the wandering of single hairs.
-    pub(super) frizz: f32,
-    /// Factor on the emergence angle.
-    pub(super) tilt: f32,
-    /// Factor on the strength of combing curves.
-    pub(super) comb: f32,
-    /// Turn of the lay about the normal, radians.
-    pub(super) turn: f32,
-}
+pub(super) struct Varied([f32; VaryWhat::ALL.len()]);
 
 impl Varied {
     /// Nothing varies.
-    pub(super) const NONE: Self = Self {
-        length: 1.0,
-        width: 1.0,
-        density: 1.0,
-        curl: 1.0,
-        clump: 1.0,
-        frizz: 1.0,
-        tilt: 1.0,
-        comb: 1.0,
-        turn: 0.0,
+    pub(super) const NONE: Self = {
+        let mut all = [1.0; VaryWhat::ALL.len()];
+        all[VaryWhat::Turn as usize] = 0.0;
+        Self(all)
     };
+
+    fn join(&mut self, vary: &Vary, share: f64) {
+        let value = (vary.from + (vary.to - vary.from) * share) as f32;
+        let joined = &mut self.0[vary.what as usize];
+        match vary.what {
+            VaryWhat::Turn => *joined += value.to_radians(),
+            _ => *joined *= value,
+        }
+    }
+}
+
+impl Index<VaryWhat> for Varied {
+    type Output = f32;
+
+    fn index(&self, what: VaryWhat) -> &f32 {
+        &self.0[what as usize]
+    }
 }
 
 /// All that varies of one class of hair.
@@ -83,21 +76,40 @@ impl<'a> Variation<'a> {
                 (_, Some(noise)) => 0.5 + CONTRAST * noise.at(position),
                 _ => 1.0,
             };
-            let share = f64::from(share.clamp(0.0, 1.0));
-            let value = (vary.from + (vary.to - vary.from) * share) as f32;
-            match vary.what {
-                VaryWhat::Length => all.length *= value,
-                VaryWhat::Width => all.width *= value,
-                VaryWhat::Density => all.density *= value,
-                VaryWhat::Curl => all.curl *= value,
-                VaryWhat::Clump => all.clump *= value,
-                VaryWhat::Frizz => all.frizz *= value,
-                VaryWhat::Tilt => all.tilt *= value,
-                VaryWhat::Comb => all.comb *= value,
-                VaryWhat::Turn => all.turn += value.to_radians(),
-            }
+            all.join(vary, f64::from(share.clamp(0.0, 1.0)));
         }
         all
+    }
+
+    /// The least and the most of each number anywhere.
+    pub(super) fn ends(&self) -> [Varied; 2] {
+        let mut ends = [Varied::NONE; 2];
+        for (vary, _) in &self.list {
+            let least = if vary.from <= vary.to { 0.0 } else { 1.0 };
+            ends[0].join(vary, least);
+            ends[1].join(vary, 1.0 - least);
+        }
+        ends
+    }
+
+    /// Entries without effect, one sentence each.
+    ///
+    /// * `name`: of the class. * `combed`: whether anything combs its hair.
+    pub(super) fn idle<'s>(
+        &'s self,
+        name: &'s str,
+        class: &ClassGroom,
+        combed: bool,
+    ) -> impl Iterator<Item = String> + 's {
+        let whats = VaryWhat::ALL.into_iter();
+        let listed = whats.filter(|what| self.list.iter().any(|(vary, _)| vary.what == *what));
+        let idle: Vec<_> = listed
+            .filter_map(|what| Some((what, missing(what, class, combed)?)))
+            .collect();
+        idle.into_iter().map(move |(what, missing)| {
+            let what = what.name();
+            format!("`vary` of `{what}` changes nothing of `{name}`: {missing}")
+        })
     }
 
     /// Whether a hair is among those that grow where a share of all does: the same hairs for any number of
@@ -106,4 +118,27 @@ impl<'a> Variation<'a> {
         let luck = hash64(self.seed ^ hash64(u64::from(id) + 1)) >> 40;
         (luck as f32) < density * (1u32 << 24) as f32
     }
+}
+
+/// Why a factor on something has no effect, if so.
+fn missing(what: VaryWhat, class: &ClassGroom, combed: bool) -> Option<&'static str> {
+    let (absent, why) = match what {
+        VaryWhat::LengthSpread => (class.length_sigma == 0.0, "its `length_sigma` is 0"),
+        VaryWhat::WidthSpread => (class.diameter_sigma == 0.0, "its `diameter_sigma` is 0"),
+        VaryWhat::Bend => (class.bend_deg == 0.0, "its `bend_deg` is 0"),
+        VaryWhat::Gravity => (class.gravity == 0.0, "its `gravity` is 0"),
+        VaryWhat::Stray => (class.stray_deg == 0.0, "its `stray_deg` is 0"),
+        VaryWhat::Roll => (class.roll_deg == 0.0, "its `roll_deg` is 0"),
+        VaryWhat::Crimp | VaryWhat::CrimpWavelength => {
+            (class.crimp_mm == 0.0, "its `crimp_mm` is 0")
+        }
+        VaryWhat::Curl | VaryWhat::CurlPitch => (class.curl_mm == 0.0, "its `curl_mm` is 0"),
+        VaryWhat::Frizz => (class.frizz_mm == 0.0, "its `frizz_mm` is 0"),
+        VaryWhat::Trim => (class.trim_mm.is_infinite(), "it has no `trim_mm`"),
+        VaryWhat::Wet => (class.wet == 0.0, "its `wet` is 0"),
+        VaryWhat::Clump => (class.clump == 0.0, "its `clump` is 0"),
+        VaryWhat::Comb => (!combed, "there are no combing curves or whorls"),
+        _ => return None,
+    };
+    absent.then_some(why)
 }

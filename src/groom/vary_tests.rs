@@ -1,10 +1,14 @@
 //! What varies over the skin does so where and as far as asked.
 
 use super::Groom;
+use super::clump::{Clumps, Tufts};
 use super::tests::{fox, grown};
 use crate::io::Picture;
+use crate::sampling::hash64;
 use crate::skin;
-use crate::species::{Vary, VaryBy, VaryWhat};
+use crate::species::{ClassGroom, Species, Vary, VaryBy, VaryWhat};
+use glam::Vec3;
+use std::collections::HashMap;
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -79,6 +83,222 @@ fn lengths_widths_and_curls_have_their_factor() {
         let [black, white] = means(&groom, moved);
         assert!(black > 1e-4 && white < 1e-6, "{what:?}: {black} {white}");
     }
+}
+
+/// Hair of all kinds of waves, wet and cut: every number does something.
+fn adorned() -> Species {
+    let mut species = fox();
+    for class in &mut species.classes {
+        let groom = &mut class.groom;
+        groom.crimp_mm = 0.3;
+        groom.curl_mm = 1.0;
+        groom.frizz_mm = 1.0;
+        groom.roll_deg = 30.0;
+        groom.trim_mm = 0.8 * groom.length_mm;
+        groom.wet = 0.5;
+    }
+    species
+}
+
+/// The number of a class by a factor, as if it were written so.
+fn scaled(groom: &mut ClassGroom, what: VaryWhat, factor: f64) {
+    match what {
+        VaryWhat::Length => groom.length_mm *= factor,
+        VaryWhat::LengthSpread => groom.length_sigma *= factor,
+        VaryWhat::Width => groom.diameter_um *= factor,
+        VaryWhat::WidthSpread => groom.diameter_sigma *= factor,
+        VaryWhat::Stalk => groom.stalk *= factor,
+        VaryWhat::Shield => groom.shield = groom.shield.map(|at| at * factor),
+        VaryWhat::Taper => groom.taper_from *= factor,
+        VaryWhat::Tilt => groom.emergence_deg *= factor,
+        VaryWhat::Bend => groom.bend_deg *= factor,
+        VaryWhat::Gravity => groom.gravity *= factor,
+        VaryWhat::Stray => groom.stray_deg *= factor,
+        VaryWhat::Roll => groom.roll_deg *= factor,
+        VaryWhat::Crimp => groom.crimp_mm *= factor,
+        VaryWhat::CrimpWavelength => groom.crimp_wavelength_mm *= factor,
+        VaryWhat::Curl => groom.curl_mm *= factor,
+        VaryWhat::CurlPitch => groom.curl_pitch_mm *= factor,
+        VaryWhat::Frizz => groom.frizz_mm *= factor,
+        VaryWhat::Trim => groom.trim_mm *= factor,
+        VaryWhat::Wet => groom.wet *= factor,
+        VaryWhat::Clump => groom.clump *= factor,
+        VaryWhat::ClumpSize => groom.clump_mm *= factor,
+        VaryWhat::Density | VaryWhat::Comb | VaryWhat::Turn => {
+            unreachable!("{what:?} is no factor on a number of a class")
+        }
+    }
+}
+
+/// Strands of a groom by their id: points, widths where nothing is widened, normal.
+type ById = HashMap<u32, (Vec<Vec3>, Vec<f32>, Vec3)>;
+
+fn by_id(groom: &Groom) -> ById {
+    let strand = |i: usize| {
+        let scale = groom.width_scale[usize::from(groom.class[i])];
+        let widths = groom.widths[groom.range(i)].iter().map(|w| w / scale);
+        (groom.strand(i).to_vec(), widths.collect(), groom.normal[i])
+    };
+    let ids = groom.id.iter().enumerate();
+    ids.map(|(i, &id)| (id, strand(i))).collect()
+}
+
+/// Share of a groom's strands in a part of the map that are not those of another groom, to the rounding of
+/// single precision.
+fn apart(groom: &Groom, want: &ById, here: &dyn Fn(f32) -> bool) -> f32 {
+    let strands = by_id(groom);
+    let (mut compared, mut apart) = (0, 0);
+    for (i, id) in groom.id.iter().enumerate() {
+        let Some(want) = want.get(id).filter(|_| here(groom.root_uv[i].x)) else {
+            continue;
+        };
+        let is = &strands[id];
+        let points = is.0.iter().zip(&want.0);
+        let widths = is.1.iter().zip(&want.1);
+        let near = points.map(|(a, b)| a.distance(*b)).fold(0.0, f32::max) < 2e-6
+            && widths.map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f32::max) < 1e-4
+            && is.2.distance(want.2) < 1e-3;
+        compared += 1;
+        apart += usize::from(!near);
+    }
+    assert!(compared > 250, "{compared}");
+    apart as f32 / compared as f32
+}
+
+/// Where a map is black hair is that of a class whose number is by the first factor another, where it is white
+/// by the second, to the rounding of single precision; and a map of one value is that number everywhere.
+#[test]
+fn every_number_is_where_a_map_says_what_a_constant_says() {
+    let skin = skin::load("swatch").unwrap();
+    let others = [VaryWhat::Density, VaryWhat::Comb, VaryWhat::Turn];
+    for what in VaryWhat::ALL.into_iter().filter(|w| !others.contains(w)) {
+        let factors = match what {
+            VaryWhat::CrimpWavelength | VaryWhat::CurlPitch | VaryWhat::ClumpSize => [0.5, 2.0],
+            VaryWhat::Shield | VaryWhat::Stalk => [0.25, 1.0],
+            VaryWhat::Taper => [1.25, 1.0],
+            VaryWhat::Length | VaryWhat::Width | VaryWhat::Trim | VaryWhat::Tilt => [0.5, 1.0],
+            // Hair without curls has fewer points.
+            VaryWhat::Curl => [0.5, 1.0],
+            _ => [0.0, 1.0],
+        };
+        let of = |change: &dyn Fn(&mut ClassGroom)| {
+            let mut species = adorned();
+            for class in &mut species.classes {
+                change(&mut class.groom);
+            }
+            grown(&skin, &species, 1_500, 5)
+        };
+        let constants = factors.map(|factor| by_id(&of(&|groom| scaled(groom, what, factor))));
+        let map = halves(what, factors[0], factors[1]);
+        let everywhere = Vary {
+            from: factors[0],
+            to: factors[0],
+            ..map.clone()
+        };
+        let varied = of(&|groom| groom.vary = vec![map.clone()]);
+        let even = of(&|groom| groom.vary = vec![everywhere.clone()]);
+        assert!(
+            varied.warnings.is_empty(),
+            "{what:?}: {:?}",
+            varied.warnings
+        );
+        // Hair on the border of two tufts may be in the other one by rounding.
+        let [black, white] = &constants;
+        assert!(
+            apart(&varied, black, &|x| (0.05..0.45).contains(&x)) < 2e-3,
+            "{what:?} black"
+        );
+        assert!(
+            apart(&varied, white, &|x| (0.55..0.95).contains(&x)) < 2e-3,
+            "{what:?} white"
+        );
+        assert!(apart(&even, black, &|_| true) < 2e-3, "{what:?} everywhere");
+        // It is seen.
+        assert!(
+            apart(&varied, white, &|x| (0.05..0.45).contains(&x)) > 0.3,
+            "{what:?} is seen"
+        );
+    }
+}
+
+/// Half of a tress hangs, the other half keeps its lay.
+#[test]
+fn gravity_is_painted_on_skins_that_hair_hangs_from() {
+    let skin = skin::load("tress").unwrap();
+    let of = |gravity: f64, vary: Vec<Vary>| {
+        let mut species = adorned();
+        for class in &mut species.classes {
+            class.groom.gravity = gravity;
+            class.groom.vary = vary.clone();
+        }
+        grown(&skin, &species, 2_000, 5)
+    };
+    let varied = of(1.0, vec![halves(VaryWhat::Gravity, 0.0, 1.0)]);
+    let [lying, hanging] = [0.0, 1.0].map(|gravity| by_id(&of(gravity, Vec::new())));
+    let [black, white] = [0.05..0.45, 0.55..0.95];
+    assert!(apart(&varied, &lying, &|x| black.contains(&x)) < 2e-3);
+    assert!(apart(&varied, &hanging, &|x| white.contains(&x)) < 2e-3);
+    // How far down tips are, in lengths.
+    let down = |strands: &ById| {
+        let drop = strands.values().map(|(points, ..)| {
+            let way: f32 = points.windows(2).map(|p| p[0].distance(p[1])).sum();
+            (points[0] - points[points.len() - 1]).y / way
+        });
+        drop.sum::<f32>() / strands.len() as f32
+    };
+    assert!(down(&hanging) > down(&lying) + 0.1);
+}
+
+/// A size of tufts between two others: hairs of either, as many as the size is near.
+#[test]
+fn tufts_of_two_sizes_mix_where_their_size_is_between() {
+    let [least, most] = [0.002f32, 0.004];
+    let tufts = Tufts::new([least, most], 7);
+    let sole = [least, most].map(|size| Clumps { size, seed: 7 });
+    let at = Vec3::new(0.011, 0.003, -0.007);
+    for share in [0.0f32, 0.25, 0.5, 1.0] {
+        let size = least * (most / least).powf(share);
+        let centers = (0..4_000u64).map(|luck| tufts.at(at, size, hash64(luck)).center);
+        let large = centers.filter(|c| *c == sole[1].at(at).center).count();
+        assert!(
+            (large as f32 / 4_000.0 - share).abs() < 0.03,
+            "{share}: {large}"
+        );
+    }
+    // Ends that are far apart have grids between them.
+    let wide = Tufts::new([0.001, 0.1], 7);
+    let between = wide.at(at, 0.008, 0).center;
+    assert!(between != sole[0].at(at).center && between.distance(at) < 0.02);
+}
+
+#[test]
+fn entries_without_effect_are_said() {
+    let skin = skin::load("swatch").unwrap();
+    let mut species = fox();
+    species.classes[1].groom.vary = [VaryWhat::Wet, VaryWhat::Comb, VaryWhat::Crimp]
+        .map(|what| halves(what, 0.0, 1.0))
+        .to_vec();
+    let said = grown(&skin, &species, 300, 1).warnings;
+    assert_eq!(
+        said,
+        [
+            "`vary` of `wet` changes nothing of `under`: its `wet` is 0",
+            "`vary` of `comb` changes nothing of `under`: there are no combing curves or whorls",
+        ]
+    );
+}
+
+/// Hair that a map shaves does not grow.
+#[test]
+fn hair_cut_to_nothing_is_counted() {
+    let skin = skin::load("swatch").unwrap();
+    let mut species = adorned();
+    species.classes[0].groom.vary = vec![halves(VaryWhat::Trim, 0.0, 1.0)];
+    let groom = grown(&skin, &species, 4_000, 5);
+    assert!(groom.accounts[0].short > 0 && groom.accounts[1].short == 0);
+    let guard = (0..groom.strands()).filter(|&i| groom.class[i] == 0);
+    let black = guard.filter(|&i| (0.05..0.45).contains(&groom.root_uv[i].x));
+    assert_eq!(black.count(), 0);
 }
 
 #[test]

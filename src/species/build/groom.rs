@@ -26,6 +26,7 @@ impl Reader<'_> {
             taper_from: number(table, "taper_from")?,
             emergence_deg: number(table, "emergence_deg")?,
             bend_deg: number(table, "bend_deg")?,
+            gravity: number(table, "gravity").unwrap_or(1.0),
             stray_deg: number(table, "stray_deg")?,
             roll_deg: number(table, "roll_deg").unwrap_or(90.0),
             crimp_mm: number(table, "crimp_mm")?,

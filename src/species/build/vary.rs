@@ -31,11 +31,7 @@ impl Reader<'_> {
                 seed: number(table, "seed").unwrap_or(0.0) as u64,
             },
         };
-        let (low, high) = match what {
-            VaryWhat::Turn => (-360.0, 360.0),
-            VaryWhat::Density | VaryWhat::Comb => (0.0, 1.0),
-            _ => (0.0, 10.0),
-        };
+        let [low, high] = what.range();
         for (key, default) in [("from", FROM), ("to", TO)] {
             let value = number(table, key).unwrap_or(default);
             if !(low..=high).contains(&value) {

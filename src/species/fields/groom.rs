@@ -60,6 +60,12 @@ pub(super) static GROOM: Shape = Shape {
             Kind::Number(number(-360.0, 360.0, "degrees")),
             "Bend along the hair under gravity and lay, root to tip.",
         ),
+        Field::optional(
+            "gravity",
+            Kind::Number(number(0.0, 4.0, "")),
+            "Factor on what turns hair downhill: lying hair a little toward its tip, hair on hanging skins wholly; \
+             1 when left out, 0 none.",
+        ),
         Field::required(
             "stray_deg",
             Kind::Number(number(0.0, 90.0, "degrees")),

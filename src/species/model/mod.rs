@@ -200,6 +200,8 @@ pub struct ClassGroom {
     pub emergence_deg: f64,
     /// Bend along the hair under gravity and lay, degrees root to tip.
     pub bend_deg: f64,
+    /// Factor on what turns hair downhill: a little where it lies, wholly on skins that it hangs from.
+    pub gravity: f64,
     /// Random deviation of direction, degrees.
     pub stray_deg: f64,
     /// How far the flat side of the section is turned from lying to the skin: standard deviation over

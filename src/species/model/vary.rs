@@ -1,6 +1,7 @@
 //! What of a groom varies over the skin.
 
 use crate::io::Picture;
+use crate::species::fields::VARIED;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -17,43 +18,105 @@ pub struct Vary {
     pub to: f64,
 }
 
-/// Numbers that vary.
+/// Numbers that vary: each by a factor, but [`Self::Turn`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VaryWhat {
-    /// Factor on the length, 0..10.
+    /// Length.
     Length,
-    /// Factor on the diameter, 0..10.
+    /// Spread of lengths.
+    LengthSpread,
+    /// Diameter.
     Width,
-    /// Share of the hairs that grow, 0..1.
+    /// Spread of diameters.
+    WidthSpread,
+    /// Share of the hairs that grow.
     Density,
-    /// Factor on the radius of curls, 0..10.
-    Curl,
-    /// Factor on the pull toward the clump's center, 0..10.
-    Clump,
-    /// Factor on how far single hairs wander, 0..10.
-    Frizz,
-    /// Factor on the emergence angle, 0..10.
+    /// Diameter of the stalk.
+    Stalk,
+    /// Where the hair widens.
+    Shield,
+    /// Where the tip begins to taper.
+    Taper,
+    /// Emergence angle.
     Tilt,
-    /// Factor on the strength of combing curves and whorls, 0..1.
+    /// Bend.
+    Bend,
+    /// What turns hair downhill.
+    Gravity,
+    /// Random deviation of direction.
+    Stray,
+    /// Random roll about the axis.
+    Roll,
+    /// Amplitude of the crimp.
+    Crimp,
+    /// Wavelength of the crimp.
+    CrimpWavelength,
+    /// Radius of curls.
+    Curl,
+    /// Way along the hair in one turn of a curl.
+    CurlPitch,
+    /// How far single hairs wander.
+    Frizz,
+    /// Length to which hairs are cut.
+    Trim,
+    /// Wetness.
+    Wet,
+    /// Pull toward the clump's center.
+    Clump,
+    /// Size of clumps.
+    ClumpSize,
+    /// Strength of combing curves and whorls.
     Comb,
-    /// Degrees by which the lay is turned about the skin's normal, counter-clockwise, -360..360.
+    /// Degrees by which the lay is turned about the skin's normal, counter-clockwise.
     Turn,
 }
 
 impl VaryWhat {
-    /// All of them.
-    pub const ALL: [Self; 9] = [
+    /// All of them, in the order in which they are declared.
+    pub const ALL: [Self; 24] = [
         Self::Length,
+        Self::LengthSpread,
         Self::Width,
+        Self::WidthSpread,
         Self::Density,
-        Self::Curl,
-        Self::Clump,
-        Self::Frizz,
+        Self::Stalk,
+        Self::Shield,
+        Self::Taper,
         Self::Tilt,
+        Self::Bend,
+        Self::Gravity,
+        Self::Stray,
+        Self::Roll,
+        Self::Crimp,
+        Self::CrimpWavelength,
+        Self::Curl,
+        Self::CurlPitch,
+        Self::Frizz,
+        Self::Trim,
+        Self::Wet,
+        Self::Clump,
+        Self::ClumpSize,
         Self::Comb,
         Self::Turn,
     ];
+
+    /// As files name it.
+    pub fn name(self) -> &'static str {
+        VARIED[self as usize].name
+    }
+
+    /// The least and the largest factor, or angle in degrees.
+    pub fn range(self) -> [f64; 2] {
+        match self {
+            Self::Turn => [-360.0, 360.0],
+            Self::Density | Self::Comb => [0.0, 1.0],
+            Self::Bend => [-10.0, 10.0],
+            // Waves and clumps of no size are none.
+            Self::CrimpWavelength | Self::CurlPitch | Self::ClumpSize => [0.1, 10.0],
+            _ => [0.0, 10.0],
+        }
+    }
 }
 
 /// What a number varies with: a value 0..1 at every place of the skin.
