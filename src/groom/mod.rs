@@ -44,6 +44,7 @@ use comb::Comb;
 use field::Field;
 use follicle::{Follicle, Surface};
 use glam::{Vec2, Vec3};
+use noise::Symmetry;
 use rayon::prelude::*;
 use std::ops::Range;
 use strand::{CLASS_SHIFT, Grower};
@@ -198,6 +199,10 @@ pub fn grow(
     let total: usize = plan.iter().map(|c| c.strands).sum();
     progress.begin("growing fur", 2 * total as u64, "strands");
     let comb = Comb::new(&species.groom.comb, skin);
+    let symmetry = Symmetry {
+        mirror: skin.mirror.as_ref(),
+        amount: species.groom.symmetry as f32,
+    };
     let scatter = || -> Result<Vec<_>, GroomError> {
         if let Some(recipe) = &species.groom.pores {
             let dealt = pores::Dealt {
@@ -218,7 +223,7 @@ pub fn grow(
     };
     let paint = || -> Result<Option<Coat>, GroomError> {
         let recipe = species.coat.as_ref();
-        let coat = recipe.map(|recipe| Coat::paint(skin, recipe, settings.seed, cancel));
+        let coat = recipe.map(|recipe| Coat::paint(skin, recipe, symmetry, settings.seed, cancel));
         coat.transpose()
     };
     let field = || (skin.gravity == 0.0).then(|| Field::new(skin));
@@ -235,6 +240,7 @@ pub fn grow(
             .collect(),
         warnings: (coat.iter().flat_map(|c| c.warnings.clone()))
             .chain(comb.iter().flat_map(|c| c.warnings.clone()))
+            .chain(symmetry.idle(skin))
             .collect(),
         width_scale: plan.iter().map(|c| c.width_scale as f32).collect(),
         natural: plan.iter().map(|c| c.natural).collect(),
@@ -244,7 +250,7 @@ pub fn grow(
     for (class, scattered) in scattered.iter().enumerate() {
         let follicles = &scattered.follicles;
         let class_groom = &species.classes[class].groom;
-        let variation = Variation::new(&class_groom.vary, settings.seed);
+        let variation = Variation::new(&class_groom.vary, symmetry, settings.seed);
         let vary_of = |follicle: &Follicle| variation.at(follicle.position, surface.uv(follicle));
         let thick = (class_groom.diameter_um * 1e-6) as f32;
         let shortest = (class_groom.diameter_um * 1e-3 / class_groom.length_mm) as f32;

@@ -1,6 +1,6 @@
 //! Numbers of a groom that vary over the skin.
 
-use super::noise::Fractal;
+use super::noise::{Fractal, Symmetry};
 use crate::sampling::hash64;
 use crate::species::{ClassGroom, Vary, VaryBy, VaryWhat};
 use glam::{Vec2, Vec3};
@@ -42,12 +42,13 @@ impl Index<VaryWhat> for Varied {
 /// All that varies of one class of hair.
 pub(super) struct Variation<'a> {
     list: Vec<(&'a Vary, Option<Fractal>)>,
+    symmetry: Symmetry<'a>,
     seed: u64,
 }
 
 impl<'a> Variation<'a> {
     /// * `seed`: of everything random.
-    pub(super) fn new(list: &'a [Vary], seed: u64) -> Self {
+    pub(super) fn new(list: &'a [Vary], symmetry: Symmetry<'a>, seed: u64) -> Self {
         let seed = hash64(seed ^ 0x7661_7279);
         let noise = |vary: &Vary| match &vary.by {
             VaryBy::Noise {
@@ -63,6 +64,7 @@ impl<'a> Variation<'a> {
         };
         Self {
             list: list.iter().map(|vary| (vary, noise(vary))).collect(),
+            symmetry,
             seed,
         }
     }
@@ -73,7 +75,7 @@ impl<'a> Variation<'a> {
         for (vary, noise) in &self.list {
             let share = match (&vary.by, noise) {
                 (VaryBy::Map { picture }, _) => picture.at(uv),
-                (_, Some(noise)) => 0.5 + CONTRAST * noise.at(position),
+                (_, Some(noise)) => 0.5 + CONTRAST * noise.both(position, self.symmetry),
                 _ => 1.0,
             };
             all.join(vary, f64::from(share.clamp(0.0, 1.0)));

@@ -2,12 +2,14 @@
 
 use super::Groom;
 use super::clump::{Clumps, Tufts};
+use super::noise::Symmetry;
 use super::tests::{fox, grown};
+use super::vary::Variation;
 use crate::io::Picture;
 use crate::sampling::hash64;
 use crate::skin;
 use crate::species::{ClassGroom, Species, Vary, VaryBy, VaryWhat};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -375,6 +377,43 @@ fn noise_reaches_both_ends_and_does_not_depend_on_threads() {
     let below = ratios.iter().filter(|r| **r < 0.25).count();
     let above = ratios.iter().filter(|r| **r > 0.75).count();
     assert!(below > 100 && above > 100, "{below} {above}");
+}
+
+/// Noise on both sides of a body: its own, half of it the mirror image's, the mirror image's.
+#[test]
+fn noise_is_as_symmetric_as_asked_for() {
+    let skin = skin::load("ball").unwrap();
+    let list = [Vary {
+        what: VaryWhat::Length,
+        by: VaryBy::Noise {
+            size_mm: 30.0,
+            rough: 0.4,
+            seed: 0,
+        },
+        from: 0.0,
+        to: 1.0,
+    }];
+    let at = |amount: f32, p: Vec3| {
+        let symmetry = Symmetry {
+            mirror: skin.mirror.as_ref(),
+            amount,
+        };
+        Variation::new(&list, symmetry, 9).at(p, Vec2::ZERO)[VaryWhat::Length]
+    };
+    let mut apart = 0;
+    for &p in skin.positions.iter().filter(|p| p.x > 0.01).step_by(11) {
+        let image = p * Vec3::new(-1.0, 1.0, 1.0);
+        let [one, own, half, same] = [(0.0, p), (0.0, image), (0.5, image), (1.0, image)]
+            .map(|(amount, place)| at(amount, place));
+        assert_eq!(one, at(1.0, p));
+        assert!((one - same).abs() < 1e-6);
+        // Noise is cut at its ends after it is blended.
+        if [one, own, half].iter().all(|v| *v > 0.0 && *v < 1.0) {
+            assert!((half - 0.5 * (one + own)).abs() < 1e-5);
+        }
+        apart += usize::from((one - own).abs() > 0.05);
+    }
+    assert!(apart > 20, "{apart}");
 }
 
 /// Sheets that lie on each other have room for the hair of one.

@@ -5,7 +5,7 @@
 
 use super::landmarks::{Landmark, along};
 use super::sculpt::{Group, Part, Sculpture, Shape};
-use super::{Skin, builtin, surface_nets};
+use super::{Mirror, Skin, builtin, surface_nets};
 use crate::math::ease::smoothstep;
 use glam::{EulerRot, Mat3, Quat, Vec2, Vec3};
 use rayon::prelude::*;
@@ -35,6 +35,7 @@ pub(super) fn body() -> Skin {
         view: Vec3::new(0.62, 0.22, 0.75).normalize(),
         front: Vec3::X,
         landmarks: landmarks(),
+        mirror: Some(mirror()),
         body: Some(BODY),
         ..Skin::default()
     };
@@ -290,6 +291,12 @@ const BARE: [(Vec3, Vec3); 3] = [
 
 /// From nose to root of the tail over crown and back, meters.
 const BODY: f32 = 0.62;
+
+/// The trunk and the head have two sides each; the tail lies to the right and has no mirror image.
+fn mirror() -> Mirror {
+    let neck = cm(8.7, 10.0, 0.0).normalize();
+    Mirror::new(Vec3::ZERO, Vec3::Z).with_head(HEAD, head_axes() * Vec3::Z, neck, [-0.06, -0.03])
+}
 
 /// Where named places are, near the skin.
 fn landmarks() -> Vec<(Landmark, Vec<Vec3>)> {

@@ -1,6 +1,6 @@
 //! Simple built-in skins: each is a grid that is bent into shape.
 
-use super::Skin;
+use super::{Mirror, Skin};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
@@ -70,6 +70,7 @@ pub(super) fn ball() -> Skin {
     });
     skin.name = "ball".to_owned();
     skin.front = Vec3::Z;
+    skin.mirror = Some(Mirror::new(Vec3::ZERO, Vec3::X));
     skin.view = Vec3::new(0.0, 0.25, 1.0).normalize();
     skin
 }
@@ -94,6 +95,7 @@ pub(super) fn swatch() -> Skin {
     });
     skin.name = "swatch".to_owned();
     skin.front = Vec3::NEG_Z;
+    skin.mirror = Some(Mirror::new(Vec3::ZERO, Vec3::X));
     skin.view = Vec3::new(0.0, 0.2, 1.0).normalize();
     skin
 }

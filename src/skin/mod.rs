@@ -4,6 +4,7 @@ mod body;
 mod builtin;
 mod error;
 mod landmarks;
+mod mirror;
 mod raw;
 mod sculpt;
 mod surface_nets;
@@ -12,6 +13,7 @@ mod tests;
 
 pub use error::SkinError;
 pub use landmarks::Landmark;
+pub use mirror::Mirror;
 
 use crate::mesh_file::{self, Format};
 use glam::{Vec2, Vec3};
@@ -55,6 +57,8 @@ pub struct Skin {
     pub placing: Placing,
     /// Where named places of the body are; empty for skins that are no bodies.
     pub landmarks: Vec<(Landmark, Vec<Vec3>)>,
+    /// Which places are mirror images of each other; `None` for skins without two sides.
+    pub mirror: Option<Mirror>,
     /// Length of the body from nose to root of the tail, meters, of built-in bodies: coats are scaled to
     /// it. `None` where millimeters of a pattern are taken as they are.
     pub body: Option<f32>,

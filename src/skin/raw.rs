@@ -2,7 +2,7 @@
 
 use super::builtin::tangent;
 use super::landmarks;
-use super::{Skin, SkinError};
+use super::{Mirror, Skin, SkinError};
 use crate::mesh_file::RawMesh;
 use glam::{Vec2, Vec3};
 use std::collections::{HashMap, HashSet};
@@ -201,6 +201,8 @@ fn comb(skin: &mut Skin, size: Vec3) {
     };
     skin.front = -back;
     skin.landmarks = landmarks::guess(skin, -back);
+    let (lo, hi) = skin.bounds();
+    skin.mirror = Some(Mirror::new(0.5 * (lo + hi), back.cross(Vec3::Y)));
     let flow = back + 0.5 * Vec3::NEG_Y;
     let count = skin.positions.len();
     skin.combing = skin.normals.iter().map(|&n| tangent(flow, n)).collect();

@@ -4,7 +4,7 @@ use super::net::Net;
 use super::turing::{self, Diffusion, POINTS_A_WAVE, Wanted};
 use super::{GroomError, Shares};
 use crate::groom::follicle::{Follicle, Surface};
-use crate::groom::noise::Fractal;
+use crate::groom::noise::{Fractal, Symmetry};
 use crate::math::ease::smoothstep;
 use crate::progress::Cancel;
 use crate::sampling::hash64;
@@ -37,6 +37,7 @@ pub(super) struct Painter<'a> {
     /// Meters in a millimeter of the recipe.
     scale: f32,
     seed: u64,
+    symmetry: Symmetry<'a>,
     /// Way along the skin from each landmark that was asked for.
     distances: RefCell<BTreeMap<Landmark, Rc<[f32]>>>,
     /// Fields that were grown, by what they are grown from: both parts of a rosette have the same.
@@ -50,6 +51,7 @@ impl<'a> Painter<'a> {
         follicles: &'a [Follicle],
         net: &'a Net,
         scale: f32,
+        symmetry: Symmetry<'a>,
         seed: u64,
     ) -> Self {
         Self {
@@ -59,6 +61,7 @@ impl<'a> Painter<'a> {
             net,
             scale,
             seed,
+            symmetry,
             distances: RefCell::default(),
             fields: RefCell::default(),
         }
@@ -161,7 +164,8 @@ impl<'a> Painter<'a> {
                 let distance = self.distance(landmark);
                 (0..self.net.len())
                     .map(|i| {
-                        let at = distance[i] + ragged * stray.at(self.net.positions[i]);
+                        let at =
+                            distance[i] + ragged * stray.both(self.net.positions[i], self.symmetry);
                         1.0 - smoothstep(within - half, within + half, at)
                     })
                     .collect()
@@ -212,7 +216,8 @@ impl<'a> Painter<'a> {
             } => {
                 let size = *size_mm as f32 * self.scale;
                 let noise = self.noise(layer.seed ^ 0x7061_7463, 0.7 * size, *rough);
-                let field: Vec<f32> = self.net.positions.iter().map(|&p| noise.at(p)).collect();
+                let points = self.net.positions.iter();
+                let field: Vec<f32> = points.map(|&p| noise.both(p, self.symmetry)).collect();
                 bordered(&field, Some(*cover), 0.0, edge)
             }
             CoatPattern::Map { picture } => {
@@ -239,6 +244,7 @@ impl<'a> Painter<'a> {
             across: turing.lay == Lay::Across,
             scale: &[],
             push: &[],
+            symmetry: self.symmetry,
             seed: hash64(self.seed ^ seed),
         };
         let field: Rc<[f32]> = self.grow(wanted, turing.fine as f32, cancel)?.into();
@@ -285,6 +291,7 @@ impl<'a> Painter<'a> {
             across: true,
             scale: &[],
             push: &push,
+            symmetry: self.symmetry,
             seed: hash64(self.seed ^ seed ^ 0x7269_6e67),
         };
         self.grow(wanted, spots.fine as f32, cancel)

@@ -11,10 +11,11 @@ mod turing;
 
 use super::GroomError;
 use super::follicle::Surface;
+use super::noise::Symmetry;
 use crate::progress::{Cancel, Silent};
 use crate::sampling::hash64;
-use crate::skin::Skin;
-use crate::species::{CoatPattern, CoatRecipe, MAX_ZONES, Species};
+use crate::skin::{Mirror, Skin};
+use crate::species::{CoatLayer, CoatPattern, CoatRecipe, MAX_ZONES, Species};
 use glam::Vec3;
 use net::Net;
 use rayon::prelude::*;
@@ -36,6 +37,8 @@ type Shares = [f32; MAX_ZONES + 1];
 pub(super) struct Coat {
     net: Net,
     shares: Vec<Shares>,
+    /// Of a body with sides that are mirror images: where one of them looks up what it is painted with.
+    mirror: Option<Mirror>,
     /// Factor on hair length of each zone.
     hair: Vec<f32>,
     seed: u64,
@@ -46,13 +49,14 @@ pub(super) struct Coat {
 impl Coat {
     /// Paints a skin.
     ///
-    /// * `seed`: of everything random.
+    /// * `symmetry`: of the patterns. * `seed`: of everything random.
     ///
     /// # Errors
     /// A skin without area, or canceled.
     pub(super) fn paint(
         skin: &Skin,
         recipe: &CoatRecipe,
+        symmetry: Symmetry<'_>,
         seed: u64,
         cancel: &Cancel,
     ) -> Result<Self, GroomError> {
@@ -63,10 +67,14 @@ impl Coat {
         let seed = hash64(seed ^ 0x636f_6174);
         let follicles = surface.scatter(seed, count, &Silent, cancel)?.follicles;
         let net = Net::new(&surface, &follicles, spacing);
-        let painter = layers::Painter::new(skin, &surface, &follicles, &net, scale, seed);
+        let painter = layers::Painter::new(skin, &surface, &follicles, &net, scale, symmetry, seed);
         let shares = painter.paint(recipe, &mut warnings, cancel)?;
         let zones = recipe.zones.iter().map(|z| z.hair);
+        // What is painted by hand stays where it was painted.
+        let is_map = |layer: &CoatLayer| matches!(layer.pattern, CoatPattern::Map { .. });
+        let exact = symmetry.amount >= 1.0 && !recipe.layers.iter().any(is_map);
         Ok(Self {
+            mirror: symmetry.mirror.filter(|_| exact).cloned(),
             shares,
             hair: std::iter::once(1.0)
                 .chain(zones)
@@ -97,7 +105,7 @@ impl Coat {
         let at = |near: &mut Vec<(u32, f32)>, i: usize| {
             let mut sum = Vec3::ZERO;
             let mut all = 0.0;
-            self.net.weights(skin.positions[i], skin.normals[i], near);
+            self.weights(skin.positions[i], skin.normals[i], near);
             for &(point, weight) in near.iter() {
                 for (tint, share) in tints.iter().zip(&self.shares[point as usize]) {
                     sum += *tint * (weight * share);
@@ -108,6 +116,18 @@ impl Coat {
         };
         let vertices = (0..skin.positions.len()).into_par_iter();
         vertices.map_with(Vec::new(), at).collect()
+    }
+
+    /// Points that say how a place is painted, with weights.
+    fn weights(&self, position: Vec3, normal: Vec3, near: &mut Vec<(u32, f32)>) {
+        let mirror = self.mirror.as_ref();
+        if let Some((p, n)) = mirror.and_then(|mirror| mirror.fold(position, normal)) {
+            self.net.weights(p, n, near);
+            if !near.is_empty() {
+                return;
+            }
+        }
+        self.net.weights(position, normal, near);
     }
 
     /// The zone of a hair, and the factor on its length.
@@ -121,7 +141,7 @@ impl Coat {
         near: &mut Vec<(u32, f32)>,
     ) -> (u8, f32) {
         let mut shares = [0.0; MAX_ZONES + 1];
-        self.net.weights(position, normal, near);
+        self.weights(position, normal, near);
         for &(point, weight) in near.iter() {
             for (sum, share) in shares.iter_mut().zip(&self.shares[point as usize]) {
                 *sum += weight * share;

@@ -1,6 +1,7 @@
 //! The skin as a net of evenly spread points: what patterns live on, whatever the triangles are like.
 
 use crate::groom::follicle::{Follicle, Surface};
+use crate::groom::noise::Symmetry;
 use crate::math::cells::CellMap;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -122,6 +123,19 @@ impl Net {
                 near.iter().map(|&(j, w)| w * values[j as usize]).sum()
             })
             .collect()
+    }
+
+    /// Where points of one side of a body have their mirror images: for each of them its index and weights of the
+    /// points there.
+    pub(super) fn images(&self, symmetry: Symmetry<'_>) -> Vec<(usize, Vec<(u32, f32)>)> {
+        let points = (0..self.len()).into_par_iter().with_min_len(256);
+        let image = |i: usize| {
+            let (p, n) = symmetry.fold(self.positions[i], self.normals[i])?;
+            let mut near = Vec::new();
+            self.weights(p, n, &mut near);
+            (!near.is_empty()).then_some((i, near))
+        };
+        points.filter_map(image).collect()
     }
 
     /// Points around a hair's root on its side of the skin, with weights that sum to 1; none far from

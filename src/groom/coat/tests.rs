@@ -9,6 +9,12 @@ use crate::skin;
 use crate::species::{CoatLayer, CoatZone, Lay, Turing};
 use std::sync::Arc;
 
+/// Each side is its own.
+const OWN: Symmetry<'static> = Symmetry {
+    mirror: None,
+    amount: 0.0,
+};
+
 fn zone() -> CoatZone {
     CoatZone {
         name: "dark".to_owned(),
@@ -48,7 +54,7 @@ fn stripes(wavelength_mm: f64, balance: f64, order: f64) -> CoatPattern {
 }
 
 fn painted(skin: &Skin, pattern: CoatPattern) -> Coat {
-    Coat::paint(skin, &recipe(pattern), 3, &Cancel::default()).unwrap()
+    Coat::paint(skin, &recipe(pattern), OWN, 3, &Cancel::default()).unwrap()
 }
 
 /// Stripes asked for are as far apart as asked for, and run across the lay of the hair.
@@ -165,6 +171,50 @@ fn maps_paint_by_texture_coordinates() {
     assert!(dark(right) > 0.88, "{right:?}");
 }
 
+/// With symmetry the field at a place is that at its mirror image; without, it has nothing to do with it, and
+/// between the two it is the more alike the more is asked for.
+#[test]
+fn sides_are_as_alike_as_asked_for() {
+    let skin = skin::load("ball").unwrap();
+    let patches = CoatPattern::Patches {
+        size_mm: 20.0,
+        cover: 0.5,
+        rough: 0.3,
+    };
+    let turing = |coat: &CoatPattern, amount: f32| {
+        let symmetry = Symmetry {
+            mirror: skin.mirror.as_ref(),
+            amount,
+        };
+        let mut recipe = recipe(coat.clone());
+        recipe.layers[0].edge = 0.8;
+        let coat = Coat::paint(&skin, &recipe, symmetry, 3, &Cancel::default()).unwrap();
+        let mut near = Vec::new();
+        let mut at = |p: Vec3| {
+            coat.weights(p, p.normalize(), &mut near);
+            let share = |&(i, w): &(u32, f32)| w * coat.shares[i as usize][1];
+            near.iter().map(share).sum::<f32>()
+        };
+        // Correlation of both sides, and the mean difference.
+        let flip = Vec3::new(-1.0, 1.0, 1.0);
+        let places = skin.positions.iter().filter(|p| p.x > 0.015);
+        let pairs: Vec<[f32; 2]> = places.map(|&p| [at(p), at(p * flip)]).collect();
+        let mean =
+            |of: &dyn Fn(&[f32; 2]) -> f32| pairs.iter().map(of).sum::<f32>() / pairs.len() as f32;
+        let (a, b) = (mean(&|p| p[0]), mean(&|p| p[1]));
+        let spread = |k: usize, m: f32| mean(&|p| (p[k] - m).powi(2)).sqrt();
+        let both = mean(&|p| (p[0] - a) * (p[1] - b)) / (spread(0, a) * spread(1, b));
+        (both, mean(&|p| (p[0] - p[1]).abs()))
+    };
+    for pattern in [stripes(25.0, 0.0, 0.0), stripes(25.0, -0.7, 0.0), patches] {
+        let [none, half, most, all] = [0.0, 0.5, 0.9, 1.0].map(|a| turing(&pattern, a));
+        println!("{none:?} {half:?} {most:?} {all:?}");
+        assert!(none.0.abs() < 0.35, "{none:?}");
+        assert!(all.1 < 1e-4, "{all:?}");
+        assert!(none.0 + 0.1 < half.0 && half.0 < most.0 && most.0 < all.0);
+    }
+}
+
 #[test]
 fn coats_do_not_depend_on_threads() {
     let skin = skin::load("ball").unwrap();
@@ -235,12 +285,13 @@ fn extreme_settings_stay_finite() {
             across: false,
             scale: &scale,
             push: &[],
+            symmetry: OWN,
             seed: 1,
         };
         let field = turing::grow(&net, &wanted, &Cancel::default()).unwrap();
         assert!(field.iter().all(|v| v.is_finite() && v.abs() <= 1.0));
     }
-    let painter = Painter::new(&skin, &surface, &follicles, &net, 1e-3, 1);
+    let painter = Painter::new(&skin, &surface, &follicles, &net, 1e-3, OWN, 1);
     let mut warnings = Vec::new();
     let mut everything = recipe(stripes(5.0, 0.0, 0.5));
     everything.layers[0].strength = 1.0;

@@ -7,6 +7,7 @@
 //! along the skin, so that legs, ears and tail are what they are for a substance in the skin.
 
 use super::net::Net;
+use crate::groom::noise::Symmetry;
 use crate::progress::Cancel;
 use crate::sampling::hash64;
 use rayon::prelude::*;
@@ -20,6 +21,9 @@ const GAIN: f32 = 6.0;
 const BIAS: f32 = 0.75;
 /// Rounds until a pattern is settled.
 const ROUNDS: usize = 48;
+/// Cells listen to their mirror images by the symmetry to this power: what begins alike stays so, but only sides
+/// that are to be almost equal are held together.
+const BOND: i32 = 8;
 /// Points in a wavelength: fewer and the kernel's center has no neighbors.
 pub(super) const POINTS_A_WAVE: f32 = 6.5;
 
@@ -37,6 +41,8 @@ pub(super) struct Wanted<'a> {
     pub(super) scale: &'a [f32],
     /// What pushes cells on (above 0) or off at each point; empty for nothing.
     pub(super) push: &'a [f32],
+    /// How alike both sides of the body are.
+    pub(super) symmetry: Symmetry<'a>,
     /// Of the noise it starts from.
     pub(super) seed: u64,
 }
@@ -55,6 +61,16 @@ pub(super) fn grow(net: &Net, wanted: &Wanted<'_>, cancel: &Cancel) -> Option<Ve
         (bits >> 40) as f32 / (1u64 << 23) as f32 - 1.0
     };
     let mut state: Vec<f32> = (0..net.len()).map(|i| 0.5 * noise(i)).collect();
+    let (amount, images) = (wanted.symmetry.amount, net.images(wanted.symmetry));
+    // Correlated by the amount, as strong as without.
+    let own = (1.0 - amount * amount).max(0.0).sqrt();
+    let shared = images.iter().map(|(i, image)| {
+        let strength: f32 = image.iter().map(|(_, w)| w * w).sum();
+        own * state[*i] + amount * at(image, &state) / strength.sqrt()
+    });
+    let shared: Vec<f32> = shared.collect();
+    put(&images, &shared, &mut state);
+    let bond = amount.powi(BOND);
     for _ in 0..ROUNDS {
         if cancel.is_cancelled() {
             return None;
@@ -70,9 +86,27 @@ pub(super) fn grow(net: &Net, wanted: &Wanted<'_>, cancel: &Cancel) -> Option<Ve
                 let drive = GAIN * (on[i] - off[i]) + BIAS * wanted.balance + push;
                 *s = drive.tanh();
             });
+        let alike = images.iter().map(|(i, image)| {
+            let own = state[*i];
+            own + bond * (at(image, &state) - own)
+        });
+        let alike: Vec<f32> = alike.collect();
+        put(&images, &alike, &mut state);
     }
     // The grain of single points is not part of the pattern.
     Some(near.run(&activator, &state))
+}
+
+/// A value at weighted points.
+fn at(points: &[(u32, f32)], values: &[f32]) -> f32 {
+    points.iter().map(|&(j, w)| w * values[j as usize]).sum()
+}
+
+/// Replaces the values of points that have an image.
+fn put<T>(images: &[(usize, T)], new: &[f32], values: &mut [f32]) {
+    for ((i, _), value) in images.iter().zip(new) {
+        values[*i] = *value;
+    }
 }
 
 /// One step of diffusion: every point becomes a mean of itself and its neighbors.

@@ -56,6 +56,7 @@ impl Reader<'_> {
         SharedGroom {
             comb: table_of(groom, "comb").map_or_else(Comb::default, |comb| self.comb(comb)),
             pores: table_of(groom, "pores").and_then(|pores| self.pores(pores, classes)),
+            symmetry: number(groom, "symmetry").unwrap_or(0.0),
         }
     }
 

@@ -145,6 +145,12 @@ pub(super) static SHARED: Shape = Shape {
             Kind::Table(&PORES),
             "Hairs leave the skin in groups; each by itself when left out.",
         ),
+        Field::optional(
+            "symmetry",
+            Kind::Setting(number(0.0, 1.0, "")),
+            "How alike both sides of the body are in the patterns of its coat and in noises that vary its hair: 0, \
+             each its own, when left out; 1 mirror images.",
+        ),
     ],
 };
 

@@ -144,6 +144,8 @@ pub struct SharedGroom {
     /// Groups in which hairs leave the skin; `None` if each does by itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pores: Option<Pores>,
+    /// How alike both sides of a body are in patterns and noises, 0 each its own .. 1 mirror images.
+    pub symmetry: f64,
 }
 
 impl SharedGroom {
