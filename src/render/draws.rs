@@ -44,6 +44,7 @@ impl Draws {
     }
 
     /// This sample's point of a net.
+    #[inline(always)]
     pub(super) fn point(&self, bounce: u32, purpose: Purpose) -> [f32; 4] {
         self.net(bounce, purpose).point(self.index)
     }

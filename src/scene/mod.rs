@@ -203,11 +203,12 @@ impl Scene {
 
     /// Whether anything is in front of a ray nearer than `far`, which is infinite for the environment.
     pub fn occluded(&self, ray: &Ray, far: f32, leaving: Option<Leaving>) -> bool {
+        // Strands before the skin: in fur they stop most rays, and near where they start.
         self.ground
             .as_ref()
             .is_some_and(|g| g.hit(ray, far).is_some())
-            || self.surface.as_ref().is_some_and(|s| s.occluded(ray, far))
             || self.strands.occluded(ray, far, leaving)
+            || self.surface.as_ref().is_some_and(|s| s.occluded(ray, far))
     }
 
     /// Points that have to be in the picture.

@@ -7,6 +7,7 @@ use super::tree::{Found, Ignored, Run, Tree};
 use crate::accel::{Ray, hash_bits};
 use crate::groom::Groom;
 use crate::math::octahedral;
+use crate::pages::Table;
 use glam::{Quat, Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
@@ -83,7 +84,7 @@ pub struct Strands {
     /// First run of each strand, and their number.
     first_run: Vec<u32>,
     /// For each run.
-    courses: Vec<Course>,
+    courses: Table<Course>,
     /// For each strand.
     length_mm: Vec<f32>,
     strands: Vec<Strand>,
@@ -127,7 +128,7 @@ impl Strands {
             };
             courses(place, &all.joints[joints.clone()], &all.at[joints])
         });
-        let courses = courses.collect();
+        let courses: Vec<Course> = courses.collect();
         let strand = |i: usize| Strand {
             id: groom.id.get(i).copied().unwrap_or(i as u32),
             root_uv: groom.root_uv.get(i).copied().unwrap_or_default(),
@@ -135,7 +136,7 @@ impl Strands {
         Ok(Self {
             first_joint,
             first_run,
-            courses,
+            courses: Table::new(courses),
             length_mm: all.length_mm,
             strands: (0..count).map(strand).collect(),
             sides: Vec::new(),
@@ -238,7 +239,9 @@ impl Strands {
     ///
     /// * `leaving`: the strand the ray starts on, if any.
     pub fn closest(&self, ray: &Ray, limit: f32, leaving: Option<Leaving>) -> Option<StrandHit> {
-        let found = self.tree.closest(ray, limit, leaving.map(|l| l.0))?;
+        // What is said of the run is on its way while the search goes on.
+        let fetch = |run| self.courses.fetch(run as usize);
+        let found = self.tree.closest(ray, limit, leaving.map(|l| l.0), fetch)?;
         self.describe(&found, ray)
     }
 

@@ -107,13 +107,21 @@ impl Tree {
     }
 
     /// The nearest segment up to `limit`; of equal distances the first segment.
-    pub(super) fn closest(&self, ray: &Ray, limit: f32, ignored: Option<Ignored>) -> Option<Found> {
-        self.search::<false>(ray, limit, ignored)
+    ///
+    /// * `met`: told of every run that was the nearest when it was met.
+    pub(super) fn closest(
+        &self,
+        ray: &Ray,
+        limit: f32,
+        ignored: Option<Ignored>,
+        met: impl Fn(u32),
+    ) -> Option<Found> {
+        self.search::<false>(ray, limit, ignored, met)
     }
 
     /// Whether any segment is met up to `limit`.
     pub(super) fn any(&self, ray: &Ray, limit: f32, ignored: Option<Ignored>) -> bool {
-        self.search::<true>(ray, limit, ignored).is_some()
+        self.search::<true>(ray, limit, ignored, |_| ()).is_some()
     }
 
     #[inline(always)]
@@ -122,6 +130,7 @@ impl Tree {
         ray: &Ray,
         limit: f32,
         ignored: Option<Ignored>,
+        met: impl Fn(u32),
     ) -> Option<Found> {
         let line = Line {
             origin: ray.origin,
@@ -143,9 +152,9 @@ impl Tree {
         {
             #[allow(unsafe_code, reason = "measured faster; the processor was asked")]
             // SAFETY: the processor has what the function enables.
-            return unsafe { self.search_avx2::<ANY>(&line, limit, &ignored) };
+            return unsafe { self.search_avx2::<ANY>(&line, limit, &ignored, met) };
         }
-        self.walk::<Plain, ANY>(&line, limit, &ignored)
+        self.walk::<Plain, ANY>(&line, limit, &ignored, met)
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -155,8 +164,9 @@ impl Tree {
         ray: &Line,
         limit: f32,
         ignored: &Ignored,
+        met: impl Fn(u32),
     ) -> Option<Found> {
-        self.walk::<lanes::Avx2, ANY>(ray, limit, ignored)
+        self.walk::<lanes::Avx2, ANY>(ray, limit, ignored, met)
     }
 
     #[inline(always)]
@@ -165,6 +175,7 @@ impl Tree {
         ray: &Line,
         mut limit: f32,
         ignored: &Ignored,
+        met_run: impl Fn(u32),
     ) -> Option<Found> {
         let mut found = None;
         // What is set aside, the nearest last, each with the distance of its box.
@@ -205,7 +216,11 @@ impl Tree {
             } else {
                 let first = next & !(LEAF | PAIR);
                 for leaf in first..=first + (next & PAIR != 0) as u32 {
-                    self.meet::<L>(leaf, ray, ignored, &mut limit, &mut found);
+                    if self.meet::<L>(leaf, ray, ignored, &mut limit, &mut found)
+                        && let Some(found) = &found
+                    {
+                        met_run(found.run);
+                    }
                     if ANY && found.is_some() {
                         return found;
                     }
@@ -234,6 +249,7 @@ impl Tree {
         }
     }
 
+    /// Whether a segment of a leaf was met that is nearer than what was found before.
     #[inline(always)]
     fn meet<L: Lanes>(
         &self,
@@ -242,12 +258,13 @@ impl Tree {
         ignored: &Ignored,
         limit: &mut f32,
         found: &mut Option<Found>,
-    ) {
+    ) -> bool {
         let leaf = &self.leaves[number as usize];
         let (mut met, t) = leaf.meets::<L>(ray, *limit);
         if met == 0 {
-            return;
+            return false;
         }
+        let mut nearer = false;
         let t = L::array(t);
         while met != 0 {
             let lane = met.trailing_zeros();
@@ -260,6 +277,7 @@ impl Tree {
             };
             if is_first && !(t < ignored.clear && (ignored.first..ignored.end).contains(&run)) {
                 *limit = t;
+                nearer = true;
                 let place = number * leaf::RUNS as u32 + lane % leaf::RUNS as u32;
                 *found = Some(Found {
                     t,
@@ -269,6 +287,7 @@ impl Tree {
                 });
             }
         }
+        nearer
     }
 }
 

@@ -183,7 +183,7 @@ fn every_ray_meets_to_the_bit_what_a_test_of_all_segments_finds() {
                 };
                 let want = every(&tree, &runs, &ray, limit, &ignored.unwrap_or(plain));
                 assert_eq!(
-                    tree.closest(&ray, limit, ignored),
+                    tree.closest(&ray, limit, ignored, |_| ()),
                     want,
                     "{name}, ray {i}: {ray:?}"
                 );
@@ -196,12 +196,13 @@ fn every_ray_meets_to_the_bit_what_a_test_of_all_segments_finds() {
                     origin: ray.origin,
                     dir,
                 };
-                let walk = tree.walk::<Plain, false>(&line, limit, &ignored.unwrap_or(plain));
+                let walk =
+                    tree.walk::<Plain, false>(&line, limit, &ignored.unwrap_or(plain), |_| ());
                 assert_eq!(walk, want, "{name}, ray {i}, without AVX2");
                 if let Some(found) = want {
                     hits += 1;
                     // The limit itself is within.
-                    assert_eq!(tree.closest(&ray, found.t, ignored), want);
+                    assert_eq!(tree.closest(&ray, found.t, ignored, |_| ()), want);
                     assert!(!tree.any(&ray, found.t.next_down(), ignored));
                 }
             }
