@@ -166,11 +166,23 @@ pub(crate) struct BinaryNode {
     pub(crate) is_leaf: bool,
 }
 
-/// A hierarchy over triangles for layouts of one's own: the best that the crate builds, a triangle a
-/// leaf, slender ones in several. The first node is the root; empty without triangles.
+/// How much time a tree is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// Little: it is asked seldom.
+    Fast,
+    /// The best that the crate builds, slender triangles in several leaves.
+    Best,
+}
+
+/// A hierarchy over triangles for layouts and walks of one's own: a triangle a leaf. The first node is the
+/// root; empty without triangles.
 ///
 /// * Fails as [`Accel::build`].
-pub(crate) fn binary_tree(triangles: &[[Vec3; 3]]) -> Result<Vec<BinaryNode>, AccelError> {
+pub(crate) fn binary_tree(
+    triangles: &[[Vec3; 3]],
+    effort: Effort,
+) -> Result<Vec<BinaryNode>, AccelError> {
     let boxes: Vec<(Vec3, Vec3)> = triangles
         .iter()
         .map(|&[a, b, c]| (a.min(b).min(c), a.max(b).max(c)))
@@ -188,7 +200,10 @@ pub(crate) fn binary_tree(triangles: &[[Vec3; 3]]) -> Result<Vec<BinaryNode>, Ac
         .collect();
     let params = BvhBuildParams {
         max_prims_per_leaf: 1,
-        ..BvhBuildParams::slow_build()
+        ..match effort {
+            Effort::Fast => BvhBuildParams::fast_build(),
+            Effort::Best => BvhBuildParams::slow_build(),
+        }
     };
     let bvh = build_bvh2_from_tris(&triangles, params, &mut Duration::default());
     let node = |n: &obvhs::bvh2::node::Bvh2Node| BinaryNode {

@@ -13,12 +13,19 @@ pub struct Account {
     pub sparse: usize,
     /// Closer to their neighbors than evenly spread: there was no room.
     pub crowded: usize,
+    /// Without hair: the skin leaves no room for one as long as thick. See
+    /// [`Collision::Exact`](crate::species::Collision), as for the two below.
+    pub buried: usize,
+    /// Hairs that were bent along the skin, which they would have entered.
+    pub bent: usize,
+    /// Hairs that end where they would have entered the skin: folds left them no way out.
+    pub cut: usize,
 }
 
 impl Account {
     /// Hairs that grew.
     pub fn grown(&self) -> usize {
-        self.asked - self.short - self.thin - self.sparse
+        self.asked - self.short - self.thin - self.sparse - self.buried
     }
 
     /// What is to be said of follicles that have no hair.
@@ -27,6 +34,7 @@ impl Account {
             (self.short, "would be shorter than thick"),
             (self.thin, "would have no width"),
             (self.sparse, "are where its density is less"),
+            (self.buried, "have no room between folds of the skin"),
         ];
         let said = reasons.iter().filter(|(count, _)| *count > 0);
         let reasons: Vec<String> = said.map(|(count, why)| format!("{count} {why}")).collect();
@@ -40,6 +48,19 @@ impl Account {
         })
     }
 
+    /// What is to be said of hairs that met the skin.
+    pub(super) fn collided(&self, class: &str) -> Option<String> {
+        (self.bent + self.cut > 0).then(|| {
+            format!(
+                "{} of {} strands of `{class}` would have entered the skin: {} lie on it, {} end before it",
+                self.bent + self.cut,
+                self.grown(),
+                self.bent,
+                self.cut
+            )
+        })
+    }
+
     /// All counts that are not zero, with their names.
     pub(crate) fn reasons(&self) -> Vec<(&'static str, usize)> {
         let all = [
@@ -47,6 +68,9 @@ impl Account {
             ("no_width", self.thin),
             ("less_density", self.sparse),
             ("no_room", self.crowded),
+            ("buried_in_skin", self.buried),
+            ("bent_by_skin", self.bent),
+            ("cut_by_skin", self.cut),
         ];
         all.into_iter().filter(|(_, count)| *count > 0).collect()
     }

@@ -67,6 +67,17 @@ pub enum GroomError {
         /// What is wrong with it.
         reason: String,
     },
+    /// Strands cannot be held against the triangles of the skin.
+    #[error(
+        "skin `{skin}`: strands cannot be held against it: {reason}; mend the mesh, or set \
+         groom.collision to near"
+    )]
+    NoCollisions {
+        /// Name of the skin.
+        skin: String,
+        /// What of it cannot be taken.
+        reason: String,
+    },
     /// Stopped by the caller.
     #[error("growing was stopped")]
     Cancelled,

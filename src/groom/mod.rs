@@ -1,8 +1,12 @@
 //! Strands of fur on a skin, in flat arrays.
 
 mod account;
+mod barrier;
 mod clump;
 mod coat;
+mod collide;
+#[cfg(test)]
+mod collide_tests;
 mod comb;
 #[cfg(test)]
 mod comb_tests;
@@ -38,8 +42,9 @@ pub use plan::{DEFAULT_STRANDS, MAX_CLASSES, MAX_STRANDS};
 
 use crate::progress::{Cancel, Progress};
 use crate::skin::Skin;
-use crate::species::{Species, VaryWhat};
+use crate::species::{Collision, Species, VaryWhat};
 use coat::Coat;
+use collide::{Collider, Contact};
 use comb::Comb;
 use field::Field;
 use follicle::{Follicle, Surface};
@@ -47,6 +52,7 @@ use glam::{Vec2, Vec3};
 use noise::Symmetry;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use strand::{CLASS_SHIFT, Grower};
 use vary::Variation;
 
@@ -118,6 +124,45 @@ impl Groom {
     pub fn skin_color(&self, skin: &Skin, vertex: usize) -> Vec3 {
         let tint = self.skin_tint.get(vertex).copied().unwrap_or(Vec3::ONE);
         skin.color[vertex] * tint
+    }
+}
+
+impl Groom {
+    /// Takes out the last class's strands of no length; returns how many they were.
+    ///
+    /// * `first`, `start`: the class's first strand and control point. * `ranks`: of its strands.
+    fn remove_buried(
+        &mut self,
+        first: usize,
+        start: usize,
+        per_strand: usize,
+        ranks: &mut Vec<u32>,
+    ) -> usize {
+        let mut kept = 0;
+        for from in 0..ranks.len() {
+            if self.length[first + from] == 0.0 {
+                continue;
+            }
+            if kept < from {
+                ranks[kept] = ranks[from];
+                self.length[first + kept] = self.length[first + from];
+                self.normal[first + kept] = self.normal[first + from];
+                self.coat[first + kept] = self.coat[first + from];
+                let strand = start + from * per_strand..start + (from + 1) * per_strand;
+                let to = start + kept * per_strand;
+                self.points.copy_within(strand.clone(), to);
+                self.widths.copy_within(strand, to);
+            }
+            kept += 1;
+        }
+        let buried = ranks.len() - kept;
+        ranks.truncate(kept);
+        self.length.truncate(first + kept);
+        self.normal.truncate(first + kept);
+        self.coat.truncate(first + kept);
+        self.points.truncate(start + kept * per_strand);
+        self.widths.truncate(start + kept * per_strand);
+        buried
     }
 }
 
@@ -227,8 +272,13 @@ pub fn grow(
         coat.transpose()
     };
     let field = || (skin.gravity == 0.0).then(|| Field::new(skin));
-    let (scattered, (coat, field)) = rayon::join(scatter, || (paint(), field()));
-    let (scattered, coat) = (scattered?, coat?);
+    let collider = || match species.groom.collision {
+        Collision::Near => Ok(None),
+        Collision::Exact => Collider::new(skin).map(Some),
+    };
+    let (scattered, (coat, field, collider)) =
+        rayon::join(scatter, || (paint(), field(), collider()));
+    let (scattered, coat, collider) = (scattered?, coat?, collider?);
     let mut groom = Groom {
         classes: species.classes.iter().map(|c| c.name.clone()).collect(),
         coats: match &species.coat {
@@ -271,24 +321,19 @@ pub fn grow(
             })
             .collect();
         let grown = fates.iter().enumerate().filter(|(_, f)| **f == Fate::Grown);
-        let ranks: Vec<u32> = grown.map(|(rank, _)| rank as u32).collect();
+        let mut ranks: Vec<u32> = grown.map(|(rank, _)| rank as u32).collect();
         let count = |fate| fates.iter().filter(|f| **f == fate).count();
-        let account = Account {
+        let mut account = Account {
             asked: fates.len(),
             short: count(Fate::Short),
             thin: count(Fate::Thin),
             sparse: count(Fate::Sparse),
             crowded: scattered.crowded,
+            ..Account::default()
         };
         groom
             .warnings
             .extend(variation.idle(&groom.classes[class], class_groom, comb.is_some()));
-        groom
-            .warnings
-            .extend(account.missing(&groom.classes[class]));
-        groom
-            .warnings
-            .extend(scattered.crowding(&groom.classes[class], skin));
         let width_scale = plan[class].width_scale;
         let grower = Grower::new(
             class_groom,
@@ -300,6 +345,7 @@ pub fn grow(
             width_scale,
         );
         let per_strand = grower.points();
+        let (bent, cut) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let start = groom.points.len();
         groom
             .points
@@ -346,6 +392,23 @@ pub fn grow(
                     let strand = i * per_strand..(i + 1) * per_strand;
                     let points = &mut points[strand.clone()];
                     normals[i] = grower.grow(id, &root, points, &mut widths[strand]);
+                    let contact = collider.as_ref().map_or(Contact::Free, |collider| {
+                        let triangle = surface.place(follicle).0;
+                        collider.settle(triangle, points, 1e-6 * class_groom.diameter_um as f32)
+                    });
+                    if contact != Contact::Free {
+                        let along = points[1] - points[0];
+                        let across = normals[i].reject_from(along);
+                        let any = along.normalize_or(Vec3::Y).any_orthonormal_vector();
+                        normals[i] = across.normalize_or(any);
+                    }
+                    match contact {
+                        Contact::Free => {}
+                        Contact::Bent => _ = bent.fetch_add(1, Ordering::Relaxed),
+                        Contact::Cut => _ = cut.fetch_add(1, Ordering::Relaxed),
+                        // Taken out below.
+                        Contact::Buried => continue,
+                    }
                     lengths[i] = arc_length(points);
                 }
                 progress.advance(ranks.len() as u64);
@@ -353,6 +416,15 @@ pub fn grow(
         if cancel.is_cancelled() {
             return Err(GroomError::Cancelled);
         }
+        account.bent = bent.into_inner();
+        account.cut = cut.into_inner();
+        account.buried = groom.remove_buried(first, start, per_strand, &mut ranks);
+        let name = &groom.classes[class];
+        let said = [account.missing(name), account.collided(name)];
+        groom.warnings.extend(said.into_iter().flatten());
+        groom
+            .warnings
+            .extend(scattered.crowding(&groom.classes[class], skin));
         groom.accounts.push(account);
         let ends = (1..=ranks.len()).map(|i| (start + i * per_strand) as u32);
         groom.offsets.extend(ends);

@@ -8,7 +8,7 @@ mod node;
 
 use super::OVERLAP;
 use super::solid::Bound;
-use crate::accel::{AccelError, binary_tree};
+use crate::accel::{AccelError, Effort, binary_tree};
 use crate::fiber::{Part, Region};
 use crate::pages::Table;
 use glam::{DVec3, Vec3, Vec4};
@@ -115,7 +115,7 @@ impl Tree {
         period: f64,
     ) -> Result<(Self, Vec<u32>), AccelError> {
         let single: Vec<[Vec3; 3]> = corners.iter().map(|t| t.map(|p| p.as_vec3())).collect();
-        let binary = binary_tree(&single)?;
+        let binary = binary_tree(&single, Effort::Best)?;
         // From a little outside of the fiber through all of a tile.
         let reach = (2.5 + period + 4.0 * OVERLAP) as f32;
         let room = ROUNDINGS * reach;

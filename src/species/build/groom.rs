@@ -2,7 +2,9 @@
 
 use super::{Reader, number, numbers, place_of, table as table_of};
 use crate::species::check::Checked;
-use crate::species::model::{Arrangement, ClassGroom, Comb, HairClass, Pores, SharedGroom};
+use crate::species::model::{
+    Arrangement, ClassGroom, Collision, Comb, HairClass, Pores, SharedGroom,
+};
 use crate::species::recipe::word;
 
 /// A hair shorter than this many diameters is not a hair.
@@ -57,6 +59,10 @@ impl Reader<'_> {
             comb: table_of(groom, "comb").map_or_else(Comb::default, |comb| self.comb(comb)),
             pores: table_of(groom, "pores").and_then(|pores| self.pores(pores, classes)),
             symmetry: number(groom, "symmetry").unwrap_or(0.0),
+            collision: match word(groom, "collision") {
+                Some("exact") => Collision::Exact,
+                _ => Collision::Near,
+            },
         }
     }
 

@@ -151,6 +151,11 @@ pub(super) static SHARED: Shape = Shape {
             "How alike both sides of the body are in the patterns of its coat and in noises that vary its hair: 0, \
              each its own, when left out; 1 mirror images.",
         ),
+        Field::optional(
+            "collision",
+            Kind::Choice(COLLISIONS),
+            "How strands are held against the skin; near when left out.",
+        ),
     ],
 };
 
@@ -186,4 +191,15 @@ static PORES: Shape = Shape {
 const ARRANGEMENTS: &[Choice] = &[
     choice("cluster", "in half a disc on the side to which hair lies"),
     choice("row", "in a row across the lay, behind the first hair"),
+];
+
+const COLLISIONS: &[Choice] = &[
+    choice(
+        "near",
+        "hair is lifted off the skin that lies around it: a sharp fold or ridge may cut through",
+    ),
+    choice(
+        "exact",
+        "no strand passes through the skin: it is bent along the triangles it would enter, or ends before them",
+    ),
 ];

@@ -146,6 +146,26 @@ pub struct SharedGroom {
     pub pores: Option<Pores>,
     /// How alike both sides of a body are in patterns and noises, 0 each its own .. 1 mirror images.
     pub symmetry: f64,
+    /// How strands are held against the skin.
+    #[serde(skip_serializing_if = "Collision::is_near")]
+    pub collision: Collision,
+}
+
+/// How strands are held against the skin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Collision {
+    /// They are lifted off the skin around them, coarsely.
+    #[default]
+    Near,
+    /// None passes through a triangle of the skin.
+    Exact,
+}
+
+impl Collision {
+    fn is_near(&self) -> bool {
+        *self == Self::Near
+    }
 }
 
 impl SharedGroom {
