@@ -5,9 +5,10 @@
 //! and the lay of the skin are added as vectors: where they oppose each other only single points are
 //! left without a direction, as between the whorls of an animal.
 
+use crate::math::triangle;
 use crate::skin::{Placing, Skin};
 use crate::species::{Comb as Recipe, CombCurve, Hand, Whorl as WhorlRecipe, WhorlCenter};
-use glam::{Quat, Vec3};
+use glam::{DVec3, Quat, Vec3};
 use rayon::prelude::*;
 
 /// A curve is cut into pieces of at most this share of its radius.
@@ -323,56 +324,19 @@ impl Ground<'_> {
 
     /// The nearest point of the skin, and its normal there.
     fn below(&self, place: Vec3) -> (Vec3, Vec3) {
-        let mut best = (f32::INFINITY, Vec3::ZERO, 0, Vec3::X);
-        for triangle in 0..self.skin.triangles.len() {
-            let corners = self.skin.corners(triangle);
-            let weights = nearest_on(corners, place);
-            let point = blend(corners, weights);
+        let place = place.as_dvec3();
+        let mut best = (f64::INFINITY, DVec3::ZERO, 0, DVec3::X);
+        for index in 0..self.skin.triangles.len() {
+            let corners = self.skin.corners(index).map(|p| p.as_dvec3());
+            let weights = triangle::nearest(&corners, place);
+            let point = triangle::blend(&corners, weights);
             let distance = point.distance_squared(place);
             if distance < best.0 {
-                best = (distance, point, triangle, weights);
+                best = (distance, point, index, weights);
             }
         }
         let normals = self.skin.triangles[best.2].map(|v| self.skin.normals[v as usize]);
-        (best.1, blend(normals, best.3).normalize_or(Vec3::Y))
+        let normal = triangle::blend(&normals.map(|n| n.as_dvec3()), best.3);
+        (best.1.as_vec3(), normal.as_vec3().normalize_or(Vec3::Y))
     }
-}
-
-fn blend(corners: [Vec3; 3], weights: Vec3) -> Vec3 {
-    corners[0] * weights.x + corners[1] * weights.y + corners[2] * weights.z
-}
-
-/// Weights of the corners at the point of a triangle that is nearest to a place (Ericson 2005,
-/// "Real-Time Collision Detection", 5.1.5).
-fn nearest_on([a, b, c]: [Vec3; 3], p: Vec3) -> Vec3 {
-    let (ab, ac) = (b - a, c - a);
-    let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return Vec3::X;
-    }
-    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
-    if d3 >= 0.0 && d4 <= d3 {
-        return Vec3::Y;
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let t = d1 / (d1 - d3);
-        return Vec3::new(1.0 - t, t, 0.0);
-    }
-    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
-    if d6 >= 0.0 && d5 <= d6 {
-        return Vec3::Z;
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let t = d2 / (d2 - d6);
-        return Vec3::new(1.0 - t, 0.0, t);
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return Vec3::new(0.0, 1.0 - t, t);
-    }
-    let sum = va + vb + vc;
-    Vec3::new(va, vb, vc) / sum
 }

@@ -1,4 +1,4 @@
-//! Maps of cells, frames, turns, exponentials, steps, unit vectors in 32 bits, the unicube map and Fresnel equations.
+//! Maps of cells, frames, turns, triangles, exponentials, steps, unit vectors in 32 bits, the unicube map and Fresnel equations.
 
 pub(crate) mod cells;
 pub mod decay;
@@ -8,5 +8,6 @@ pub mod fresnel;
 pub mod octahedral;
 pub(crate) mod shear;
 pub mod symmetry;
+pub(crate) mod triangle;
 pub mod turn;
 pub mod unicube;

@@ -1,9 +1,9 @@
 //! The skin as a signed distance in a narrow band.
 
 use super::VolumeError;
-use super::distance::to_triangle;
 use super::winding::Winding;
 use crate::export::vdb::{Leaf, Tile, TileSize, Tree};
+use crate::math::triangle;
 use crate::progress::{Cancel, Progress};
 use glam::{DVec3, IVec3, Vec3};
 use rayon::prelude::*;
@@ -166,6 +166,11 @@ fn list(corners: &[[DVec3; 3]], reach: f64) -> Vec<(Key, u32)> {
         .collect();
     listed.par_sort_unstable();
     listed
+}
+
+/// Distance from the nearest point of a triangle.
+fn to_triangle(p: DVec3, corners: &[DVec3; 3]) -> f64 {
+    p.distance(triangle::blend(corners, triangle::nearest(corners, p)))
 }
 
 /// Halves the box of leaves until single leaves are left that the triangle is near to.

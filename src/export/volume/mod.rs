@@ -6,7 +6,6 @@
 
 mod color;
 mod curve;
-mod distance;
 mod error;
 mod fiber;
 mod field;

@@ -1,40 +1,45 @@
-//! How far a point is from a triangle.
+//! The nearest point of a triangle.
 
 use glam::DVec3;
 
-/// Distance of `p` from the nearest point of the triangle, by the region that `p` is in (Ericson 2005,
-/// section 5.1.5).
-pub(super) fn to_triangle(p: DVec3, [a, b, c]: &[DVec3; 3]) -> f64 {
-    let (ab, ac, ap) = (*b - *a, *c - *a, p - *a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
+/// Weights of the corners at the point of a triangle that is nearest to `p`, by the region that `p` is in
+/// (Ericson 2005, "Real-Time Collision Detection", 5.1.5). They are 0..1 and sum to 1.
+pub(crate) fn nearest(&[a, b, c]: &[DVec3; 3], p: DVec3) -> DVec3 {
+    let (ab, ac) = (b - a, c - a);
+    let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
     if d1 <= 0.0 && d2 <= 0.0 {
-        return ap.length();
+        return DVec3::X;
     }
-    let bp = p - *b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
+    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
     if d3 >= 0.0 && d4 <= d3 {
-        return bp.length();
+        return DVec3::Y;
     }
     let vc = d1 * d4 - d3 * d2;
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return (ap - ab * (d1 / (d1 - d3))).length();
+        let t = d1 / (d1 - d3);
+        return DVec3::new(1.0 - t, t, 0.0);
     }
-    let cp = p - *c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
+    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
     if d6 >= 0.0 && d5 <= d6 {
-        return cp.length();
+        return DVec3::Z;
     }
     let vb = d5 * d2 - d1 * d6;
     if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return (ap - ac * (d2 / (d2 - d6))).length();
+        let t = d2 / (d2 - d6);
+        return DVec3::new(1.0 - t, 0.0, t);
     }
     let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
         let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return (bp - (*c - *b) * t).length();
+        return DVec3::new(0.0, 1.0 - t, t);
     }
     let sum = va + vb + vc;
-    (ap - ab * (vb / sum) - ac * (vc / sum)).length()
+    DVec3::new(va, vb, vc) / sum
+}
+
+/// What is at these weights of the corners.
+pub(crate) fn blend(&[a, b, c]: &[DVec3; 3], weights: DVec3) -> DVec3 {
+    a * weights.x + b * weights.y + c * weights.z
 }
 
 #[cfg(test)]
@@ -58,12 +63,13 @@ mod tests {
             for i in 0..=steps {
                 for j in 0..=steps - i {
                     let (u, v) = (f64::from(i) / 300.0, f64::from(j) / 300.0);
-                    let q =
-                        corners[0] + (corners[1] - corners[0]) * u + (corners[2] - corners[0]) * v;
+                    let q = blend(&corners, DVec3::new(1.0 - u - v, u, v));
                     least = least.min(p.distance(q));
                 }
             }
-            let found = to_triangle(p, &corners);
+            let weights = nearest(&corners, p);
+            assert!(weights.min_element() >= 0.0 && (weights.element_sum() - 1.0).abs() < 1e-12);
+            let found = p.distance(blend(&corners, weights));
             assert!(
                 found <= least + 1e-12 && found > least - 0.02,
                 "{found} {least}"
