@@ -25,6 +25,8 @@ pub(crate) struct RawMesh {
     pub(crate) part: Vec<u32>,
     /// Names of the parts; empty where the file gives none.
     pub(crate) names: Vec<String>,
+    /// What of the file could not be read, a sentence each.
+    pub(crate) remarks: Vec<String>,
     /// How places in the file are named.
     pub(crate) places: Places,
 }

@@ -1,40 +1,56 @@
-//! Meshes of a USD layer, with the transforms above them: points, faces and texture coordinates. Normals
-//! are not read: of subdivision surfaces there are none.
+//! Meshes of a USD stage, with the transforms above them: points, faces, texture coordinates and normals,
+//! which subdivision surfaces have none of.
 //!
-//! The layer is taken by itself: what it refers to is not followed. What renderers do not show (guides,
-//! proxies, invisible prims) is left out.
+//! What the file refers to beside it is followed. What renderers do not show (guides, proxies, invisible and
+//! inactive prims) is left out.
+
+mod primvar;
+mod stage;
 
 use super::{MAX_COUNT, MAX_PARTS, MeshFileError, RawMesh};
-use crate::usd_file::{self, Prim, Property, Specifier, Value, placed, to_meters};
-use glam::{DMat4, DVec3, Vec2};
+use crate::usd_file::{Prim, Specifier, Value, placed, to_meters};
+use glam::{DMat3, DMat4, Vec2, Vec3};
+use primvar::{Primvar, floats};
 use std::collections::HashMap;
 
-/// Reads the bytes of a layer. `file` is for messages.
+/// Reads the bytes of a file. `file` is its path: for messages, and to find what lies beside it.
 pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
     let invalid = |place: String, reason: String| MeshFileError::Invalid {
         file: file.to_owned(),
         place,
         reason,
     };
-    let layer = usd_file::parse(bytes).map_err(|e| invalid("as USD".to_owned(), e.to_string()))?;
+    let stage =
+        stage::open(file, bytes).map_err(|e| invalid("as USD".to_owned(), e.to_string()))?;
     let mut reader = Reader {
         file,
         mesh: RawMesh::default(),
         lacks_uv: false,
+        has_normals: false,
+        inherits: false,
     };
-    for prim in &layer.prims {
-        reader.visit(prim, "", to_meters(&layer))?;
+    for prim in &stage.roots {
+        reader.visit(prim, "", to_meters(&stage.layer))?;
     }
-    let Reader {
-        mut mesh, lacks_uv, ..
-    } = reader;
+    let mut mesh = reader.mesh;
     if mesh.faces == 0 {
-        let reason = "there is no Mesh with faces in it; what it refers to is not read";
-        return Err(invalid("as USD".to_owned(), reason.to_owned()));
+        let mut reasons = vec!["there is no Mesh with faces in it".to_owned()];
+        reasons.extend(stage.remarks);
+        if reader.inherits {
+            reasons.push(format!(
+                "what prims inherit or specialize is not read: {}",
+                stage::REMEDY
+            ));
+        }
+        return Err(invalid("as USD".to_owned(), reasons.join("; ")));
     }
-    if lacks_uv {
+    if reader.lacks_uv {
         mesh.uvs.clear();
     }
+    if !reader.has_normals {
+        mesh.normals.clear();
+    }
+    mesh.remarks = stage.remarks;
     Ok(mesh)
 }
 
@@ -42,26 +58,25 @@ struct Reader<'a> {
     file: &'a str,
     mesh: RawMesh,
     lacks_uv: bool,
-}
-
-/// Texture coordinates of a mesh.
-struct Coordinates<'a> {
-    values: &'a [f32],
-    indices: Option<&'a [i64]>,
-    /// Whether each corner of a face has its own, not each point.
-    by_corner: bool,
+    has_normals: bool,
+    /// Whether a prim takes something from another in a way that is not followed.
+    inherits: bool,
 }
 
 impl Reader<'_> {
     fn visit(&mut self, prim: &Prim, above: &str, outer: DMat4) -> Result<(), MeshFileError> {
         let is_hidden = prim.value("visibility").and_then(Value::text) == Some("invisible");
         let purpose = prim.value("purpose").and_then(Value::text);
+        let is_inactive = prim.field("active").and_then(Value::number) == Some(0.0);
         if prim.specifier != Specifier::Def
             || is_hidden
+            || is_inactive
             || matches!(purpose, Some("guide" | "proxy"))
         {
             return Ok(());
         }
+        let arcs = ["inherits", "inheritPaths", "specializes"];
+        self.inherits |= arcs.iter().any(|arc| prim.field(arc).is_some());
         let path = format!("{above}/{}", prim.name);
         let placed = placed(prim, outer).map_err(|reason| self.invalid(&path, reason))?;
         if prim.type_name == "Mesh" {
@@ -102,38 +117,51 @@ impl Reader<'_> {
             let reason = format!("a face refers to point {bad} of {count}");
             return Err(self.invalid(path, reason));
         }
-        let uvs = coordinates(prim);
+        let (uvs, normals) = (Primvar::coordinates(prim), Primvar::normals(prim));
         self.lacks_uv |= uvs.is_none();
+        self.has_normals |= normals.is_some();
+        let turned = DMat3::from_mat4(placed).inverse().transpose();
         // Mirrored meshes turn the other way.
         let is_left = prim.value("orientation").and_then(Value::text) == Some("leftHanded");
         let is_turned = is_left != (placed.determinant() < 0.0);
         let part = self.mesh.part_named(path);
         self.limit("parts", self.mesh.names.len(), MAX_PARTS)?;
 
-        let mut vertices: HashMap<(i64, [u32; 2]), u32> = HashMap::new();
+        let mut vertices: HashMap<(i64, [u32; 2], [u32; 3]), u32> = HashMap::new();
         let mut face = Vec::new();
         let mut corner = 0;
         for &count in counts {
             face.clear();
             for _ in 0..count {
                 let point = indices[corner];
-                let uv = match &uvs {
-                    Some(uvs) => uvs.at(corner, point as usize).ok_or_else(|| {
-                        let reason = format!("corner {corner} has no texture coordinates");
-                        self.invalid(path, reason)
-                    })?,
-                    None => Vec2::ZERO,
+                let lacks = |what: &str| {
+                    let reason = format!("corner {corner} has no {what}");
+                    self.invalid(path, reason)
                 };
+                let uv = match &uvs {
+                    Some(uvs) => uvs.at(corner, point as usize).map(Vec2::from_slice),
+                    None => Some(Vec2::ZERO),
+                };
+                let uv = uv.ok_or_else(|| lacks("texture coordinates"))?;
+                let normal = match &normals {
+                    Some(normals) => normals.at(corner, point as usize).map(Vec3::from_slice),
+                    None => Some(Vec3::ZERO),
+                };
+                let normal = normal.ok_or_else(|| lacks("normal"))?;
                 let next = self.mesh.positions.len() as u32;
-                let key = (point, uv.to_array().map(f32::to_bits));
-                let vertex = *vertices.entry(key).or_insert(next);
+                let bits = (
+                    uv.to_array().map(f32::to_bits),
+                    normal.to_array().map(f32::to_bits),
+                );
+                let vertex = *vertices.entry((point, bits.0, bits.1)).or_insert(next);
                 if vertex == next {
-                    let p = &points[3 * point as usize..][..3];
-                    let p = DVec3::new(p[0].into(), p[1].into(), p[2].into());
+                    let p = Vec3::from_slice(&points[3 * point as usize..]).as_dvec3();
                     self.mesh
                         .positions
                         .push(placed.transform_point3(p).as_vec3());
                     self.mesh.uvs.push(uv);
+                    let normal = turned * normal.as_dvec3();
+                    self.mesh.normals.push(normal.normalize_or_zero().as_vec3());
                 }
                 face.push(vertex);
                 corner += 1;
@@ -152,48 +180,6 @@ impl Reader<'_> {
     }
 }
 
-impl Coordinates<'_> {
-    /// Of a corner of a face, which is at a point.
-    fn at(&self, corner: usize, point: usize) -> Option<Vec2> {
-        let element = if self.by_corner { corner } else { point };
-        let index = match self.indices {
-            Some(indices) => usize::try_from(*indices.get(element)?).ok()?,
-            None => element,
-        };
-        let uv = self.values.get(index.checked_mul(2)?..)?.get(..2)?;
-        Some(Vec2::new(uv[0], uv[1])).filter(|uv| uv.is_finite())
-    }
-}
-
-/// The texture coordinates called `st`, else the first.
-fn coordinates(prim: &Prim) -> Option<Coordinates<'_>> {
-    let is_uv = |p: &&Property| p.name.starts_with("primvars:") && p.type_name == "texCoord2f[]";
-    let property = (prim.property("primvars:st"))
-        .filter(is_uv)
-        .or_else(|| prim.properties.iter().find(is_uv))?;
-    let by_corner = match property.word("interpolation") {
-        "faceVarying" => true,
-        "vertex" | "varying" => false,
-        _ => return None,
-    };
-    let indices = prim.property(&format!("{}:indices", property.name));
-    Some(Coordinates {
-        values: floats(property.any_value(), 2),
-        indices: indices.and_then(|p| match p.any_value() {
-            Some(Value::Ints(indices)) => Some(&indices[..]),
-            _ => None,
-        }),
-        by_corner,
-    })
-}
-
-fn floats(value: Option<&Value>, wanted: usize) -> &[f32] {
-    match value {
-        Some(Value::Floats { values, width }) if *width == wanted => values,
-        _ => &[],
-    }
-}
-
 fn ints<'p>(prim: &'p Prim, name: &str) -> &'p [i64] {
     match prim.value(name) {
         Some(Value::Ints(values)) => values,
@@ -204,7 +190,6 @@ fn ints<'p>(prim: &'p Prim, name: &str) -> &'p [i64] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
 
     /// Two squares of a strip, in centimeters with Z up, moved by a meter along Z.
     const STRIP: &str = r#"#usda 1.0
@@ -254,6 +239,55 @@ def Xform "a"
         assert_eq!(
             read("a.usda", shared.as_bytes()).unwrap().positions.len(),
             6
+        );
+    }
+
+    #[test]
+    fn normals_are_those_of_polygons_and_turn_with_them() {
+        let text = STRIP
+            .replace(
+                "def Mesh \"strip\"\n    {",
+                "def Mesh \"strip\"\n    {\n        uniform token subdivisionScheme = \"none\"\n\
+                 normal3f[] normals = [(0, 0, 1), (0, 0, 1), (3, 0, 4), (0, 0, 1), (0, 0, 1), (3, 0, 4)]",
+            )
+            .replace("xformOp:translate = (0, 0, 100)", "xformOp:scale = (0.5, 1, 1)")
+            .replace("xformOp:translate", "xformOp:scale");
+        let mesh = read("a.usda", text.as_bytes()).unwrap();
+        assert_eq!(mesh.normals.len(), mesh.positions.len());
+        let right = mesh.positions.iter().position(|p| p.x > 0.009).unwrap();
+        let (expected, left) = (Vec3::new(6.0, 4.0, 0.0).normalize(), mesh.normals[0]);
+        assert!(
+            mesh.normals[right].distance(expected) < 1e-5,
+            "{:?}",
+            mesh.normals
+        );
+        assert!(left.distance(Vec3::Y) < 1e-5, "{left}");
+
+        let corners = text.replace(
+            "(3, 0, 4)]",
+            "(3, 0, 4), (0, 0, 1), (0, 1, 0)] (\n interpolation = \"faceVarying\"\n)",
+        );
+        assert!(corners.contains("faceVarying\"\n)\n"), "{corners}");
+        let mesh = read("a.usda", corners.as_bytes()).unwrap();
+        assert!(
+            mesh.normals.iter().any(|n| n.distance(Vec3::NEG_Z) < 1e-5),
+            "{:?}",
+            mesh.normals
+        );
+
+        // A subdivision surface has those of its limit.
+        let smooth = text.replace("\"none\"", "\"catmullClark\"");
+        assert!(
+            read("a.usda", smooth.as_bytes())
+                .unwrap()
+                .normals
+                .is_empty()
+        );
+        let short = text.replace(", (3, 0, 4)]", "]");
+        let error = read("a.usda", short.as_bytes()).unwrap_err().to_string();
+        assert!(
+            error.contains("/a/strip: corner 6 has no normal"),
+            "{error}"
         );
     }
 

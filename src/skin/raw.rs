@@ -18,8 +18,8 @@ impl RawMesh {
     /// Degenerate and repeated triangles are dropped, unused vertices too, normals are computed
     /// where missing (weighted by angle), texture coordinates go round the vertical axis, the fur
     /// lies along the longest horizontal axis toward -X or -Z, and down.
-    pub(super) fn into_skin(self, file: &str) -> Result<Skin, SkinError> {
-        let mut warnings = Vec::new();
+    pub(super) fn into_skin(mut self, file: &str) -> Result<Skin, SkinError> {
+        let mut warnings = std::mem::take(&mut self.remarks);
         let mut triangles = self.sound_triangles(&mut warnings);
         if triangles.is_empty() {
             return Err(SkinError::Empty {
