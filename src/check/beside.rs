@@ -90,5 +90,15 @@ pub(super) fn unfollowed(file: &str, why: &Unfollowed) -> (Severity, String, &'s
             format!("{file} is not looked into"),
             "nothing, if readers know it",
         ),
+        Unfollowed::NoPrim => (
+            Severity::Error,
+            format!("{file} is not there: the file has no such prim"),
+            "mend the path of the prim, or put the prim into the file",
+        ),
+        Unfollowed::NoDefault => (
+            Severity::Error,
+            format!("{file} is referred to by its default prim, but names none"),
+            "set defaultPrim in that file, or name the prim that is meant",
+        ),
     }
 }

@@ -58,6 +58,15 @@ pub enum CheckError {
         /// The file.
         file: String,
     },
+    /// Points or arrays for programs of one's own.
+    #[error(
+        "{file}: it holds points that no program reads as fur by itself, so there are no rules for it: \
+         check the .usdc or .hair of the same strands"
+    )]
+    Plain {
+        /// The file.
+        file: String,
+    },
     /// The file could not be read.
     #[error(transparent)]
     File(#[from] FileError),
@@ -174,6 +183,7 @@ fn check_file(
             let lie = hair::check(&file, &bytes, settings.strands, findings);
             lie.map_err(|error| CheckError::Hair { file, error })
         }
+        "npz" | "ply" | "glb" | "pbrt" => Err(CheckError::Plain { file }),
         _ => Err(CheckError::Suffix { file }),
     }
 }

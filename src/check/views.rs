@@ -10,6 +10,7 @@ use super::rule::Rule;
 use super::stage::{Item, items};
 use super::{CheckSettings, attributes, extent, layer, material, package, suffix, volume};
 use crate::usd_file::{Files, Layer, Prim, Value, compose};
+use std::collections::VecDeque;
 use std::path::Path;
 
 /// Most variants of a stage that are looked at.
@@ -48,24 +49,32 @@ pub(super) fn check(
     let all = items(&roots);
     layer::check(layer, &all, findings);
     let mut seen = stage.check(&all, findings);
-    let mut left = MOST_VIEWS;
-    for set in roots.iter().flat_map(|root| &root.variant_sets) {
+    // Sets of variants that are to be looked at, and the choices that lead to them.
+    let mut known = Vec::new();
+    let mut waiting = VecDeque::new();
+    add_sets(&roots, &[], &mut known, &mut waiting);
+    let (mut left, mut variants) = (MOST_VIEWS, 0);
+    while let Some((before, set, names)) = waiting.pop_front() {
         let mut levels = Vec::new();
-        for variant in set.variants.iter().take(left) {
-            let chosen = [(set.name.clone(), variant.name.clone())];
+        for name in names.iter().take(left) {
+            let mut chosen = before.clone();
+            chosen.push((set.clone(), name.clone()));
             let roots = compose(layer, path, &mut files, &chosen);
-            findings.view = format!("{{{}={}}}", set.name, variant.name);
+            let choices: Vec<String> = chosen.iter().map(|(s, v)| format!("{s}={v}")).collect();
+            findings.view = format!("{{{}}}", choices.join(","));
             let view = stage.check(&items(&roots), findings);
             seen.strands = seen.strands.max(view.strands);
             frames::add_unseen(&mut seen.regions, view.regions);
-            levels.push((variant.name.clone(), view.ids));
+            levels.push((name.clone(), view.ids));
+            add_sets(&roots, &chosen, &mut known, &mut waiting);
         }
         left -= levels.len();
+        variants += names.len();
         findings.view.clear();
-        groom::check_nesting(&set.name, &levels, findings);
+        groom::check_nesting(&set, &levels, findings);
     }
     groom::check_number(&roots, seen.strands, settings.strands, findings);
-    check_whole(&roots, &files, findings);
+    check_whole(variants, &files, findings);
     seen.regions
 }
 
@@ -108,8 +117,51 @@ impl Stage<'_> {
     }
 }
 
+/// A set of variants and their names, after the choices without which it is not there.
+type Set = (Vec<(String, String)>, String, Vec<String>);
+
+/// Adds the sets of all prims that are not known yet; one choice is made of all sets of a name.
+fn add_sets(
+    prims: &[Prim],
+    chosen: &[(String, String)],
+    known: &mut Vec<String>,
+    waiting: &mut VecDeque<Set>,
+) {
+    let mut new = Vec::new();
+    collect(prims, known, &mut new);
+    known.extend(new.iter().map(|(name, _)| name.clone()));
+    waiting.extend(
+        new.into_iter()
+            .map(|(name, names)| (chosen.to_vec(), name, names)),
+    );
+}
+
+/// Names of variants by their set, of sets that are not known.
+fn collect(prims: &[Prim], known: &[String], new: &mut Vec<(String, Vec<String>)>) {
+    for set in prims.iter().flat_map(|prim| &prim.variant_sets) {
+        if known.contains(&set.name) {
+            continue;
+        }
+        let place = new.iter().position(|(name, _)| *name == set.name);
+        let place = place.unwrap_or_else(|| {
+            new.push((set.name.clone(), Vec::new()));
+            new.len() - 1
+        });
+        for variant in &set.variants {
+            if !new[place].1.contains(&variant.name) {
+                new[place].1.push(variant.name.clone());
+            }
+        }
+    }
+    for prim in prims {
+        collect(&prim.children, known, new);
+    }
+}
+
 /// That all was looked at.
-fn check_whole(roots: &[Prim], files: &Files<'_>, findings: &mut Findings<'_>) {
+///
+/// * `variants`: that there are.
+fn check_whole(variants: usize, files: &Files<'_>, findings: &mut Findings<'_>) {
     let mut add = |severity, message: String, remedy: &str| {
         let (rule, place) = ((Rule::C16, severity), Place::default());
         findings.add(rule, OF_LAYERS, place, message, remedy);
@@ -118,8 +170,6 @@ fn check_whole(roots: &[Prim], files: &Files<'_>, findings: &mut Findings<'_>) {
         let (severity, message, remedy) = unfollowed(file, why);
         add(severity, message, remedy);
     }
-    let sets = roots.iter().flat_map(|root| &root.variant_sets);
-    let variants: usize = sets.map(|set| set.variants.len()).sum();
     if variants > MOST_VIEWS {
         let message = format!("of {variants} variants only the first {MOST_VIEWS} were looked at");
         add(Severity::Note, message, "check files of fewer variants");

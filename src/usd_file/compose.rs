@@ -4,10 +4,11 @@
 //! specializes, relocations and list edits that remove something are not followed; files of fur have none.
 
 use super::DEEPEST;
+use super::files::{Files, Unfollowed};
 use super::layer::{Fields, Layer, Prim, Property, Specifier, VariantSet};
 use super::value::{Reference, Value};
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Memory that the prims of a stage may take, without the arrays that they share with their layers, bytes.
@@ -16,74 +17,17 @@ const MOST_MEMORY: usize = 512 << 20;
 /// What a prim counts as at least, so that there are about a million at most.
 const LEAST_OF_PRIM: usize = 512;
 
+/// Metadata by which a prim takes something from another.
+const ARCS: [&str; 5] = [
+    "references",
+    "payload",
+    "inherits",
+    "inheritPaths",
+    "specializes",
+];
+
 /// Most files that refer to one another in a row.
 const LONGEST_CHAIN: usize = 16;
-
-/// Why a file that another one names is not followed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Unfollowed {
-    /// It is not there, or no plain file.
-    Gone,
-    /// It cannot be read, or is broken: what is wrong.
-    Broken(String),
-    /// It is of a kind that is not looked into.
-    Foreign,
-}
-
-/// Reads a layer that another one names.
-pub type Open<'f> = dyn Fn(&Path) -> Result<Layer, Unfollowed> + 'f;
-
-/// The files of a stage: read once, kept for all its views.
-pub struct Files<'f> {
-    open: &'f Open<'f>,
-    layers: HashMap<PathBuf, Option<Arc<Layer>>>,
-    /// Files that are named and not followed, from where the program runs.
-    pub unfollowed: Vec<(String, Unfollowed)>,
-    /// Whether there are more prims, or more files in a row, than are looked at.
-    pub is_cut: bool,
-}
-
-impl<'f> Files<'f> {
-    /// * `open`: reads a file, or says why not.
-    pub fn new(open: &'f Open<'f>) -> Self {
-        Self {
-            open,
-            layers: HashMap::new(),
-            unfollowed: Vec::new(),
-            is_cut: false,
-        }
-    }
-
-    /// The layer that a stage begins with; prims of it may refer to others of it.
-    fn root(&mut self, root: &Layer, path: &Path) -> Arc<Layer> {
-        let anchored = || {
-            let mut root = root.clone();
-            anchor_layer(&mut root, path);
-            Some(Arc::new(root))
-        };
-        let known = self.layers.entry(path.to_owned()).or_insert_with(anchored);
-        known.clone().unwrap_or_default()
-    }
-
-    fn layer(&mut self, path: &str) -> Option<Arc<Layer>> {
-        let key = PathBuf::from(path);
-        if let Some(known) = self.layers.get(&key) {
-            return known.clone();
-        }
-        let layer = match (self.open)(&key) {
-            Ok(mut layer) => {
-                anchor_layer(&mut layer, &key);
-                Some(Arc::new(layer))
-            }
-            Err(why) => {
-                self.unfollowed.push((path.to_owned(), why));
-                None
-            }
-        };
-        self.layers.insert(key, layer.clone());
-        layer
-    }
-}
 
 /// The root prims of a stage.
 ///
@@ -102,76 +46,6 @@ pub fn compose(
         room: MOST_MEMORY,
     };
     composer.layer(&root, 0)
-}
-
-/// Makes the files that a layer names absolute, so that it does not matter who reads them.
-fn anchor_layer(layer: &mut Layer, path: &Path) {
-    anchor_fields(&mut layer.metadata, path);
-    for prim in &mut layer.prims {
-        anchor_prim(prim, path);
-    }
-}
-
-fn anchor_prim(prim: &mut Prim, path: &Path) {
-    anchor_fields(&mut prim.metadata, path);
-    for property in &mut prim.properties {
-        let samples = property.samples.iter_mut().map(|(_, value)| value);
-        for value in property.value.iter_mut().chain(samples) {
-            if let Value::Asset(asset) = value {
-                *asset = anchored(asset, path);
-            }
-        }
-    }
-    for child in &mut prim.children {
-        anchor_prim(child, path);
-    }
-    for variant in prim
-        .variant_sets
-        .iter_mut()
-        .flat_map(|set| &mut set.variants)
-    {
-        anchor_prim(variant, path);
-    }
-}
-
-/// Whether a name is no path, but a URI or an expression (between backticks) that other programs resolve.
-pub fn is_resolved_elsewhere(asset: &str) -> bool {
-    asset.contains("://") || asset.starts_with('`')
-}
-
-/// The file that a layer names; none for none, and what is no path as it is.
-fn anchored(asset: &str, path: &Path) -> String {
-    if asset.is_empty() || is_resolved_elsewhere(asset) {
-        return asset.to_owned();
-    }
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let file = folder.join(asset.strip_prefix("./").unwrap_or(asset));
-    file.to_string_lossy().into_owned()
-}
-
-fn anchor_fields(fields: &mut Fields, path: &Path) {
-    for (name, value) in fields {
-        let sublayers = name == "subLayers";
-        match value {
-            Value::References(references) => {
-                for reference in references {
-                    reference.asset = match reference.asset.as_str() {
-                        "" => path.to_string_lossy().into_owned(),
-                        asset => anchored(asset, path),
-                    };
-                }
-            }
-            // A crate file has the names of sublayers as plain strings.
-            Value::Texts(names) if sublayers => {
-                let reference = |name: &String| Reference {
-                    asset: anchored(name, path),
-                    prim: String::new(),
-                };
-                *value = Value::References(names.iter().map(reference).collect());
-            }
-            _ => {}
-        }
-    }
 }
 
 struct Composer<'c, 'f> {
@@ -289,25 +163,93 @@ impl Composer<'_, '_> {
         depth: usize,
         chain: usize,
     ) -> Option<Prim> {
-        let layer = self.files.layer(&reference.asset)?;
+        let mut layers = Vec::new();
+        self.stack(&reference.asset, chain + 1, &mut layers);
         let from = match reference.prim.as_str() {
-            "" => format!(
-                "/{}",
-                layer.field("defaultPrim")?.text()?.trim_start_matches('/')
-            ),
+            "" => match layers.first()?.field("defaultPrim").and_then(Value::text) {
+                Some(name) => format!("/{}", name.trim_start_matches('/')),
+                None => {
+                    (self.files).miss(reference.asset.clone(), Unfollowed::NoDefault);
+                    return None;
+                }
+            },
             prim => prim.to_owned(),
         };
-        let mut names = from.split('/').filter(|name| !name.is_empty());
-        let first = names.next()?;
-        let root = layer.prims.iter().find(|prim| prim.name == first)?;
-        let spec = names.try_fold(root, |prim, name| prim.child(name))?;
+        let mut whole: Option<Prim> = None;
+        for layer in &layers {
+            let Some(spec) = spec_of(layer, &from) else {
+                continue;
+            };
+            let prim = self.prim(spec, &from, selections, depth + 1, chain + 1)?;
+            match &mut whole {
+                Some(strong) => merge(strong, prim),
+                None => whole = Some(prim),
+            }
+        }
+        let Some(mut prim) = whole else {
+            if !layers.is_empty() {
+                let elsewhere = layers.iter().any(|layer| is_elsewhere(layer, &from));
+                let why = match elsewhere {
+                    true => Unfollowed::Foreign,
+                    false => Unfollowed::NoPrim,
+                };
+                (self.files).miss(format!("{}<{from}>", reference.asset), why);
+            }
+            return None;
+        };
         // What it refers to itself moves to where it stands, and all of it from there.
-        let mut prim = self.prim(spec, &from, selections, depth + 1, chain + 1)?;
         if from != path {
             moved(&mut prim, &from, path);
         }
         Some(prim)
     }
+
+    /// A layer and those below it, each once.
+    fn stack(&mut self, file: &str, chain: usize, layers: &mut Vec<Arc<Layer>>) {
+        let Some(layer) = self.files.layer(file) else {
+            return;
+        };
+        if layers.iter().any(|known| Arc::ptr_eq(known, &layer)) {
+            return;
+        }
+        layers.push(layer.clone());
+        if let Some(Value::References(sublayers)) = layer.field("subLayers") {
+            for sublayer in sublayers {
+                if self.take(0, 0, chain + 1).is_none() {
+                    return;
+                }
+                self.stack(&sublayer.asset, chain + 1, layers);
+            }
+        }
+    }
+}
+
+fn names_of(path: &str) -> impl Iterator<Item = &str> {
+    path.split('/').filter(|name| !name.is_empty())
+}
+
+/// What a layer itself says of a prim.
+fn spec_of<'l>(layer: &'l Layer, path: &str) -> Option<&'l Prim> {
+    let mut names = names_of(path);
+    let first = names.next()?;
+    let root = layer.prims.iter().find(|prim| prim.name == first)?;
+    names.try_fold(root, |prim, name| prim.child(name))
+}
+
+/// Whether a prim that a layer says nothing of may come from what one above it refers to.
+fn is_elsewhere(layer: &Layer, path: &str) -> bool {
+    let mut level = &layer.prims;
+    for name in names_of(path) {
+        let Some(prim) = level.iter().find(|prim| prim.name == name) else {
+            return false;
+        };
+        let refers = ARCS.iter().any(|arc| prim.field(arc).is_some());
+        if refers || !prim.variant_sets.is_empty() {
+            return true;
+        }
+        level = &prim.children;
+    }
+    false
 }
 
 fn name_only(variant: &Prim) -> Prim {

@@ -12,6 +12,7 @@
 mod binary;
 mod compose;
 mod error;
+mod files;
 mod layer;
 mod lexer;
 mod text;
@@ -23,8 +24,9 @@ mod zip;
 #[cfg(test)]
 mod tests;
 
-pub use compose::{Files, Open, Unfollowed, compose, is_resolved_elsewhere};
+pub use compose::compose;
 pub use error::UsdFileError;
+pub use files::{Files, Open, Unfollowed, is_resolved_elsewhere};
 pub use layer::{Fields, Layer, Prim, Property, Specifier, VariantSet};
 pub(crate) use transform::{placed, to_meters};
 pub use value::{Reference, Value};

@@ -136,6 +136,88 @@ fn all_variants_are_looked_at() {
     }
 }
 
+/// Sets of prims below the root, and sets that only a choice of another brings.
+#[test]
+fn sets_of_all_prims_are_looked_at() {
+    let fault = "def Volume \"v\" {}";
+    let set = |name: &str, content: &str| {
+        format!("variantSet \"{name}\" = {{ \"plain\" {{}} \"other\" {{ {content} }} }}")
+    };
+    let below = format!(
+        "def Xform \"a\" {{ def Xform \"b\" {{ {} }} }}",
+        set("size", fault)
+    );
+    let within = set(
+        "look",
+        &format!("def Xform \"c\" {{ {} }}", set("size", fault)),
+    );
+    for (inside, view) in [
+        (below, "/fox{size=other}/a/b/v"),
+        (within, "/fox{look=other,size=other}/c/v"),
+    ] {
+        let all = in_folder(&[("fox.usda", &root("", &inside))], "fox.usda");
+        assert_eq!(all.len(), 1, "{all:?}");
+        assert_eq!((all[0].rule, all[0].prim.as_str()), (Rule::C11, view));
+    }
+}
+
+/// Prims that are referred to and are not in a file that is there.
+#[test]
+fn prims_that_are_not_there_are_said() {
+    let parts = "#usda 1.0\n( subLayers = [@./sub.usda@] )\ndef \"a\" { def \"b\" {} }\n\
+                 def \"r\" ( references = @./sub.usda@</s> ) {}\n";
+    let sub = "#usda 1.0\ndef \"s\" { def \"t\" {} }\n";
+    for (reference, found) in [
+        ("@./parts.usda@</a/b>", None),
+        // By a sublayer, and by what the prim above refers to.
+        ("@./parts.usda@</s/t>", None),
+        (
+            "@./parts.usda@</r/t>",
+            Some((Note, "parts.usda</r/t> is not looked into")),
+        ),
+        (
+            "@./parts.usda@</a/c>",
+            Some((
+                Error,
+                "parts.usda</a/c> is not there: the file has no such prim",
+            )),
+        ),
+        (
+            "@./parts.usda@</c>",
+            Some((Error, "parts.usda</c> is not there")),
+        ),
+        (
+            "@./parts.usda@",
+            Some((
+                Error,
+                "parts.usda is referred to by its default prim, but names none",
+            )),
+        ),
+        ("</gone>", Some((Error, "fox.usda</gone> is not there"))),
+        ("</fox/here>", None),
+    ] {
+        let inside = format!("def \"here\" {{}}\ndef \"x\" ( references = {reference} ) {{}}");
+        let text = root("", &inside);
+        let files = [
+            ("fox.usda", text.as_str()),
+            ("parts.usda", parts),
+            ("sub.usda", sub),
+        ];
+        let all = in_folder(&files, "fox.usda");
+        let Some((severity, said)) = found else {
+            assert_eq!(all, [], "{reference}");
+            continue;
+        };
+        assert_eq!(all.len(), 1, "{reference}: {all:?}");
+        assert_eq!(
+            (all[0].rule, all[0].severity),
+            (Rule::C16, severity),
+            "{all:?}"
+        );
+        assert!(all[0].message.contains(said), "{all:?}");
+    }
+}
+
 /// What is too much to look at is said.
 #[test]
 fn what_is_left_out_is_said() {

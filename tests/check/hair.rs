@@ -141,6 +141,11 @@ fn numbers_of_strands_places_and_files_that_are_none() {
         let said = refused[0].error.to_string();
         assert!(said.contains("fur.hair: ") && said.contains(word), "{said}");
     }
+    for name in ["fur.npz", "fur.PLY", "fur.glb", "fur.pbrt"] {
+        let refused = check(&[name], &CheckSettings::default()).refused;
+        let said = refused[0].error.to_string();
+        assert!(said.contains("no rules") && said.contains(name), "{said}");
+    }
     // Against grids that lie elsewhere.
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);

@@ -58,7 +58,9 @@ pub(super) fn open(file: &str, bytes: &[u8]) -> Result<Stage, UsdFileError> {
             let why = match why {
                 Unfollowed::Gone => "it is not there",
                 Unfollowed::Broken(what) => what,
-                Unfollowed::Foreign => "it is no path of a file",
+                Unfollowed::Foreign => "it is no path of a file, or comes from elsewhere",
+                Unfollowed::NoPrim => "the file has no such prim",
+                Unfollowed::NoDefault => "the file names no default prim",
             };
             format!("{named} is referred to but not read: {why}; {REMEDY}")
         })
