@@ -1,7 +1,9 @@
 //! `vair export`: the fur of a species for other programs.
 
+mod announce;
 mod coats;
 mod lines;
+mod settings;
 mod usdz;
 mod volume;
 
@@ -10,24 +12,15 @@ use super::{Console, Failure, bake::parse_count};
 use crate::assembly;
 use crate::bake::{Cache, Settings};
 use crate::blame::Blame;
-use crate::export::asset::{
-    self, AssetSettings, ClassLook, Curves, Frame, Layout, Parts, Profile, READERS, Units, Up, Wear,
-};
-use crate::export::usd::Form;
+use crate::export::asset::{self, ClassLook, Parts, Wear};
 use crate::export::{ExportError, Format};
-use crate::groom::{self, Forecast, Groom, GroomSettings};
+use crate::groom::{self, Groom, GroomSettings};
 use crate::io::check_writable;
-use crate::skin::Skin;
 use crate::species::Species;
+use announce::{announce, described};
 use coats::Dressed;
+use settings::{CurvesArg, LayoutArg, UnitsArg, UpArg, settings};
 use std::path::PathBuf;
-
-/// Text of more bytes than this is refused, and of more than the other remarked upon.
-const MOST_TEXT: u64 = 2_000_000_000;
-const MUCH_TEXT: u64 = 50_000_000;
-
-/// Levels of detail that have names.
-const MOST_LEVELS: usize = 4;
 
 /// Arguments of `vair export`.
 #[derive(Debug, clap::Args)]
@@ -129,42 +122,6 @@ pub(super) struct Args {
     /// .glb, .pbrt. May repeat.
     #[arg(long, short, required = true)]
     output: Vec<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum CurvesArg {
-    /// Catmull-Rom through all points, pinned at its ends.
-    Pinned,
-    /// Catmull-Rom with a point beyond each end, for RenderMan up to 25 and USD before 22.11.
-    Phantom,
-    /// Bezier, for readers that know no other cubic curve.
-    Bezier,
-    /// Straight pieces.
-    Linear,
-}
-
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum LayoutArg {
-    /// All in one file.
-    Single,
-    /// An interface and its payload.
-    Payload,
-}
-
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum UnitsArg {
-    /// Meters.
-    M,
-    /// Centimeters.
-    Cm,
-}
-
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum UpArg {
-    /// Y.
-    Y,
-    /// Z.
-    Z,
 }
 
 /// Runs the command.
@@ -301,123 +258,4 @@ fn looks(args: &Args, species: &Species, console: &Console) -> Result<Vec<ClassL
 fn writes_usd(args: &Args) -> Result<bool, ExportError> {
     let formats: Result<Vec<_>, _> = args.output.iter().map(|o| Format::of(o)).collect();
     Ok(formats?.iter().any(|f| matches!(f, Format::Usd(_))))
-}
-
-/// What was asked for in the words of the library.
-fn settings(args: &Args) -> Result<AssetSettings, Failure> {
-    if !(1..=MOST_LEVELS).contains(&args.levels) {
-        let message = format!("--levels is {}, must be 1 to {MOST_LEVELS}", args.levels);
-        return Err(Failure::new(Blame::Input, message));
-    }
-    let mut readers = Vec::new();
-    for name in args.profile.iter().map(|name| name.trim()) {
-        if name == "all" {
-            readers.clear();
-            break;
-        }
-        let Some((_, reader)) = READERS.iter().find(|(known, _)| *known == name) else {
-            let known: Vec<&str> = READERS.iter().map(|(name, _)| *name).collect();
-            return Err(Failure::with_help(
-                Blame::Input,
-                format!("`{name}` is no reader that --profile knows"),
-                format!("there are all, {}", known.join(", ")),
-            ));
-        };
-        readers.push(*reader);
-    }
-    Ok(AssetSettings {
-        curves: match args.curves {
-            CurvesArg::Pinned => Curves::Pinned,
-            CurvesArg::Phantom => Curves::Phantom,
-            CurvesArg::Bezier => Curves::Bezier,
-            CurvesArg::Linear => Curves::Linear,
-        },
-        frame: Frame {
-            units: match args.units {
-                UnitsArg::M => Units::Meters,
-                UnitsArg::Cm => Units::Centimeters,
-            },
-            up: match args.up {
-                UpArg::Y => Up::Y,
-                UpArg::Z => Up::Z,
-            },
-        },
-        profile: Profile::of(&readers),
-        layout: match args.layout {
-            LayoutArg::Single => Layout::Single,
-            LayoutArg::Payload => Layout::Payload,
-        },
-        no_proxy: args.no_proxy,
-        no_guides: args.no_guides,
-    })
-}
-
-/// Says how large the files will be, and refuses text that nobody could open.
-fn announce(
-    args: &Args,
-    settings: &AssetSettings,
-    skin: &Skin,
-    forecast: &Forecast,
-    console: &Console,
-) -> Result<(), Failure> {
-    /// Bytes of a control point and of a strand in memory.
-    const OF_POINT: usize = 16;
-    const OF_STRAND: usize = 64;
-    let (strands, points) = (forecast.strands, forecast.points);
-    let binary = asset::estimate(
-        skin,
-        [strands, points],
-        args.levels,
-        args.coats.len(),
-        settings,
-    );
-    // All coats are there at once.
-    let memory = 2 * args.coats.len().max(1) * (points * OF_POINT + strands * OF_STRAND);
-    if !writes_usd(args)? {
-        return Ok(());
-    }
-    console.say(format!(
-        "{strands} strands of {points} points: about {} in binary form, {} of memory",
-        megabytes(binary),
-        megabytes(memory as u64)
-    ));
-    for output in &args.output {
-        let text = asset::TEXT_FACTOR * binary;
-        let is_text =
-            Format::of(output)? == Format::Usd(Form::Text) && settings.layout == Layout::Single;
-        if !is_text || text <= MUCH_TEXT {
-            continue;
-        }
-        let remark = format!(
-            "{} would be about {} of text",
-            output.display(),
-            megabytes(text)
-        );
-        let help = "write .usdc, which is a quarter of that and opens in a fraction of the time";
-        if text > MOST_TEXT {
-            return Err(Failure::with_help(Blame::Input, remark, help));
-        }
-        console.say(format!("warning: {remark}: {help}"));
-    }
-    Ok(())
-}
-
-fn megabytes(bytes: u64) -> String {
-    match bytes {
-        b if b >= 10_000_000 => format!("{} MB", b / 1_000_000),
-        b => format!("{:.1} MB", b as f64 / 1e6),
-    }
-}
-
-/// Strands of every class and level.
-fn described(parts: &Parts<'_>) -> String {
-    let levels: Vec<String> = (parts.levels.iter())
-        .map(|level| {
-            let counts: Vec<String> = (level.classes.iter().zip(&parts.groom.classes))
-                .map(|(of_level, class)| format!("{} {class}", of_level.strands.len()))
-                .collect();
-            format!("{} {}", level.name, counts.join(" + "))
-        })
-        .collect();
-    levels.join(", ")
 }

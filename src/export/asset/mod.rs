@@ -14,6 +14,7 @@ mod colors;
 mod columns;
 mod curves;
 mod frame;
+mod hair;
 mod levels;
 mod look;
 mod material;

@@ -2,10 +2,8 @@
 
 use super::color::Coats;
 use super::levels::{Level, LevelClass, guides, proxy};
-use super::look::ClassLook;
 use super::profile::Reader;
 use super::provenance::{asset_info, identifier, recipe, user_properties};
-use super::strands::Strands;
 use super::{AssetSettings, Parts, material, skin};
 use crate::PROGRAM;
 use crate::export::usd::{Array, Attribute, Layer, Prim, Rows, Value, VariantSet};
@@ -206,17 +204,6 @@ impl<'p, 'a> Builder<'p, 'a> {
             .collect()
     }
 
-    fn strands(&self, class: LevelClass) -> Strands<'a> {
-        let AssetSettings { curves, frame, .. } = *self.settings;
-        Strands::new(
-            self.parts.groom,
-            class.strands,
-            class.widening,
-            curves,
-            frame,
-        )
-    }
-
     /// The color of the skin.
     pub(super) fn skin_color(&self) -> Vec3 {
         Vec3::from_array(self.parts.species.skin_color.map(|c| c as f32))
@@ -242,12 +229,8 @@ impl<'p, 'a> Builder<'p, 'a> {
         materials
     }
 
-    fn look(&self, class: usize) -> Option<&'a ClassLook> {
-        self.parts.looks.get(class)
-    }
-
     /// Binds a material, if there are any.
-    fn bind(&self, prim: &mut Prim<'a>, material: &str) {
+    pub(super) fn bind(&self, prim: &mut Prim<'a>, material: &str) {
         if !self.parts.looks.is_empty() {
             prim.api_schemas.push("MaterialBindingAPI".to_owned());
             prim.relate(
@@ -302,7 +285,7 @@ impl<'p, 'a> Builder<'p, 'a> {
     }
 
     /// Classes with strands, and those strands.
-    fn classes(&self, level: &Level) -> Vec<(usize, LevelClass)> {
+    pub(super) fn classes(&self, level: &Level) -> Vec<(usize, LevelClass)> {
         let classes = level.classes.iter().cloned().enumerate();
         classes.filter(|(_, c)| !c.strands.is_empty()).collect()
     }
@@ -318,89 +301,8 @@ impl<'p, 'a> Builder<'p, 'a> {
         variant
     }
 
-    /// The strands of a level as a variant of some name.
-    fn strands_of(&self, level: &Level, name: &str) -> Prim<'a> {
-        let mut render = Prim::over("render");
-        for (class, strands) in self.classes(level) {
-            let mut curves = Prim::over(identifier(&self.class(class).name));
-            self.fill(&mut curves, class, strands, Purpose::Render);
-            render.children.push(curves);
-        }
-        let mut geometry = Prim::over("geo");
-        geometry.children.push(render);
-        let mut variant = Prim::over(name);
-        variant.children.push(geometry);
-        variant
-    }
-
     pub(super) fn class(&self, class: usize) -> &'a HairClass {
         &self.parts.species.classes[class]
-    }
-
-    /// Curves without their strands.
-    fn curves(&self, class: usize) -> Prim<'a> {
-        let mut curves = Prim::new("BasisCurves", identifier(&self.class(class).name));
-        let (kind, basis, wrap) = self.settings.curves.schema();
-        curves.set_uniform("token", "type", Value::token(kind));
-        if let Some(basis) = basis {
-            curves.set_uniform("token", "basis", Value::token(basis));
-        }
-        curves.set_uniform("token", "wrap", Value::token(wrap));
-        let name = self.class(class).name.clone();
-        if let Some(look) = self.look(class)
-            && self.settings.profile.has(Reader::Blender)
-        {
-            let hair = self.class(class);
-            let longest = self.coats[class].0[0].longest(hair.groom.length_mm as f32);
-            user_properties(&mut curves, &material::blender(&look.parts[0][longest]));
-        }
-        self.bind(&mut curves, &identifier(&name));
-        user_properties(
-            &mut curves,
-            &[
-                ("class", Value::string(name)),
-                ("species", Value::string(&self.parts.species.id)),
-            ],
-        );
-        curves
-    }
-
-    /// Gives curves their strands.
-    pub(super) fn fill(
-        &self,
-        prim: &mut Prim<'a>,
-        class: usize,
-        of_class: LevelClass,
-        purpose: Purpose,
-    ) {
-        let strands = self.strands(of_class);
-        if self.content.shape {
-            let extent = Array::Vec3(Rows::of(strands.extent().to_vec()));
-            prim.set("float3[]", "extent", extent.into());
-        }
-        if self.content.strands {
-            prim.set("int[]", "curveVertexCounts", strands.counts().into());
-        }
-        if self.content.shape {
-            let points: Value<'a> = strands.points().into();
-            prim.set("point3f[]", "points", points.clone());
-            prim.add(Attribute {
-                name: "widths".to_owned(),
-                type_name: "float[]",
-                interpolation: "vertex",
-                value: Some(strands.widths().into()),
-                ..Attribute::default()
-            });
-            if purpose == Purpose::Guide {
-                prim.primvar("point3f[]", "rest", "vertex", points);
-            }
-        }
-        if self.content.strands {
-            self.strand_columns(prim, &strands, class, purpose);
-        }
-        if self.content.color {
-            self.point_columns(prim, &strands, class);
-        }
     }
 }
 
