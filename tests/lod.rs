@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::Vec3;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use vair::bsdf::HairMaterial;
 use vair::export::asset::{Level, levels};
 use vair::groom::{Groom, GroomSettings, grow};
@@ -69,14 +69,64 @@ fn coverage(groom: &Groom, skin: &Skin) -> f64 {
     hair.sum::<f64>() / film.pixels.len() as f64
 }
 
+/// A groom of which the strands of a thinner one are seen, as wide as that has them, for the same view.
+fn seen(full: &Groom, thin: &Groom) -> Groom {
+    let mut part = full.clone();
+    part.widths.fill(1e-12);
+    let places: HashMap<u32, usize> = full.id.iter().enumerate().map(|(i, id)| (*id, i)).collect();
+    for (i, id) in thin.id.iter().enumerate() {
+        assert_eq!(full.strand(places[id]), thin.strand(i));
+        let from = full.offsets[places[id]] as usize;
+        let widths = &thin.widths[thin.offsets[i] as usize..thin.offsets[i + 1] as usize];
+        part.widths[from..from + widths.len()].copy_from_slice(widths);
+    }
+    part
+}
+
+/// Fewer strands than an animal grows by default keep its look.
 #[test]
-fn levels_nest_and_cover_as_much() {
-    for (name, on, strands) in [
-        ("red-fox", "ball", 30_000),
-        ("polar-bear", "swatch", 20_000),
+fn fewer_strands_cover_as_much() {
+    for (name, on) in [
+        ("red-fox", "body"),
+        ("sheep", "swatch"),
+        ("polar-bear", "swatch"),
     ] {
         let skin = skin::load(on).unwrap();
-        let species = species::load(name, &[]).unwrap();
+        let mut species = species::load(name, &[]).unwrap();
+        // Skin under a painted coat is tinted, and would count as hair.
+        species.coat = None;
+        let settings = GroomSettings::default();
+        let full = grow(&skin, &species, &settings, &Silent, &Cancel::default()).unwrap();
+        let all = coverage(&full, &skin);
+        for part in [2, 4] {
+            let covered = |species: &Species| {
+                let thin = grown(&skin, species, full.strands() / part);
+                coverage(&seen(&full, &thin), &skin) / all
+            };
+            let share = covered(&species);
+            let mut kept = species.clone();
+            kept.groom.keep_widths = true;
+            println!(
+                "{name} on {on}, 1/{part}: {share:.3} of {all:.3}; kept {:.3}",
+                covered(&kept)
+            );
+            assert!((share - 1.0).abs() < 0.05, "{name} 1/{part}: {share}");
+        }
+    }
+}
+
+#[test]
+fn levels_nest_and_cover_as_much() {
+    for (name, on, strands, keep_widths) in [
+        ("red-fox", "ball", 30_000, false),
+        ("red-fox", "ball", 30_000, true),
+        ("polar-bear", "swatch", 20_000, true),
+        // All that it has.
+        ("polar-bear", "swatch", 58_855, false),
+    ] {
+        let skin = skin::load(on).unwrap();
+        let mut species = species::load(name, &[]).unwrap();
+        species.groom.keep_widths = keep_widths;
         let full = grown(&skin, &species, strands);
         let all = coverage(&full, &skin);
         assert!(all > 0.1, "{all}: nothing to tell");

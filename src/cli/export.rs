@@ -65,7 +65,8 @@ pub(super) struct Args {
     coats: Vec<String>,
     #[command(flatten)]
     on: SkinArgs,
-    /// Strands in all; if not given, as many as the animal has, at most 250000.
+    /// Strands in all; if not given, as many as the animal has, at most 250000. Fewer are wider, to cover
+    /// as much: see `keep_widths` of a species.
     #[arg(long, value_parser = parse_count)]
     strands: Option<u64>,
     /// Seed of the fur.

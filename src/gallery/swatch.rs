@@ -48,7 +48,10 @@ pub(super) fn draw(
         strands: Some(model.strands * studio.quality.strands),
         seed: 0,
     };
-    let groom = groom::grow(&skin, species, &settings, &Silent, cancel)?;
+    // How many there are is chosen for the look that they have at the width an opaque coat needs.
+    let mut kept = species.clone();
+    kept.groom.keep_widths = true;
+    let groom = groom::grow(&skin, &kept, &settings, &Silent, cancel)?;
     let view = View {
         zoom: model.zoom,
         ..View::from_direction(skin.view)

@@ -227,8 +227,8 @@ pub fn forecast(
 /// Grows the fur of `species` on `skin`: strands sorted by class, then by rank.
 ///
 /// The result is a function of the arguments alone, not of the number of threads. A groom of fewer
-/// strands is a subset of one with more: same ids, same curves; only widths differ, to keep the
-/// coat opaque. Follicles that have no hair or no room are counted in its warnings.
+/// strands is a subset of one with more: same ids, same curves; only widths differ, to cover as
+/// much. Follicles that have no hair or no room are counted in its warnings.
 ///
 /// # Errors
 /// [`GroomError`]: nothing to grow or nowhere to grow it, or `cancel` was set.

@@ -30,6 +30,10 @@ const OPAQUE_LAYERS: f64 = 3.5;
 const MAX_WIDTH_UM: f64 = 280.0;
 const MAX_WIDTH_SCALE: f64 = 10.0;
 
+/// Strands fewer than by default are as much wider as fewer they are, up to this: a coat a tenth as full has
+/// hair of ten times its width, a thinner one shows its skin.
+const MAX_WIDENING: f64 = 10.0;
+
 /// What is grown of one class.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ClassPlan {
@@ -66,7 +70,8 @@ pub(super) fn plan(
         .map(|c| c.groom.density_per_cm2 * 1e4 * area_m2)
         .collect();
     let all: f64 = natural.iter().sum();
-    let total = strands.unwrap_or((all.round().max(1.0) as usize).min(DEFAULT_STRANDS));
+    let default = (all.round().max(1.0) as usize).min(DEFAULT_STRANDS);
+    let total = strands.unwrap_or(default);
     if total == 0 {
         return Err(GroomError::NoStrands);
     }
@@ -88,23 +93,27 @@ pub(super) fn plan(
             (natural * area).powf(CLASS_FLATTENING)
         })
         .collect();
-    let counts = share(&natural, &weights, total);
-    Ok((0..counts.len())
-        .map(|i| {
+    let of = |total: usize| -> Vec<ClassPlan> {
+        let counts = share(&natural, &weights, total);
+        let class = |i: usize| {
             let groom = &species.classes[i].groom;
-            let hair_area = grown_mm(groom) * 1e-3 * groom.diameter_um * 1e-6;
+            let layer = grown_mm(groom) * 1e-3 * groom.diameter_um * 1e-6 / area_m2;
             ClassPlan {
                 strands: counts[i],
                 natural: natural[i],
-                width_scale: width_scale(
-                    natural[i],
-                    counts[i],
-                    hair_area / area_m2,
-                    groom.diameter_um,
-                ),
+                width_scale: width_scale(natural[i], counts[i], layer, groom.diameter_um),
             }
-        })
-        .collect())
+        };
+        (0..counts.len()).map(class).collect()
+    };
+    let mut plan = of(total);
+    if total < default && !species.groom.keep_widths {
+        for (class, full) in plan.iter_mut().zip(of(default)) {
+            let fewer = full.strands as f64 / class.strands.max(1) as f64;
+            class.width_scale = full.width_scale * fewer.clamp(1.0, MAX_WIDENING);
+        }
+    }
+    Ok(plan)
 }
 
 fn check(class: &str, field: &'static str, value: f64) -> Result<(), GroomError> {
@@ -233,6 +242,47 @@ mod tests {
                 assert_eq!(cut.0, short.0);
                 assert!((cut.1 / short.1 - 1.0).abs() < 1e-12, "{cut:?} {short:?}");
             }
+        }
+    }
+
+    /// Fewer strands than by default are wider by as many as are missing, up to a limit; with `keep_widths` they
+    /// are as wide as an opaque coat asks for.
+    #[test]
+    fn fewer_strands_keep_the_area_of_their_hair() {
+        let skin = crate::skin::load("swatch").unwrap();
+        let mut species = fox();
+        for area_m2 in [0.0036, 0.01, 1.0] {
+            let mut planned = |strands, keep_widths| {
+                species.groom.keep_widths = keep_widths;
+                plan(&skin, area_m2, &species, strands).unwrap()
+            };
+            let full = planned(None, false);
+            let all: usize = full.iter().map(|c| c.strands).sum();
+            for part in [1, 2, 4] {
+                let thin = planned(Some(all / part), false);
+                for (thin, full) in thin.iter().zip(&full) {
+                    let area = |c: &ClassPlan| c.strands as f64 * c.width_scale;
+                    assert!((area(thin) / area(full) - 1.0).abs() < 1e-9, "{thin:?}");
+                }
+                let kept = planned(Some(all / part), true);
+                let wider = thin.iter().zip(&kept);
+                assert!(
+                    wider
+                        .into_iter()
+                        .all(|(t, k)| t.width_scale >= k.width_scale)
+                );
+            }
+            let sparse = planned(Some(all / 100), false);
+            for (sparse, full) in sparse.iter().zip(&full) {
+                assert_eq!(sparse.width_scale, MAX_WIDENING * full.width_scale);
+            }
+            // More than by default need no more.
+            let more = planned(Some(2 * all), false);
+            assert!(
+                more.iter()
+                    .zip(&full)
+                    .all(|(m, f)| m.width_scale <= f.width_scale)
+            );
         }
     }
 

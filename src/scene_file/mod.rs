@@ -5,7 +5,7 @@ mod fields;
 pub(crate) use fields::SCENE;
 
 use crate::scene::{Environment, Lamp, LampShape};
-use crate::species::build::{number, numbers, tables};
+use crate::species::build::{flag, number, numbers, tables};
 use crate::species::check::{Checked, Value};
 use crate::species::error::Problems;
 use crate::species::recipe::{self, missing, need, text, word};
@@ -202,13 +202,6 @@ fn lamp(table: &Checked, problems: &mut Problems) -> Option<(Lamp, bool)> {
         strength: strength * color,
     };
     Some((lamp, flag(table, "with_camera").unwrap_or(false)))
-}
-
-fn flag(table: &Checked, key: &str) -> Option<bool> {
-    match table.get(key)?.value {
-        Value::Flag(flag) => Some(flag),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -92,7 +92,8 @@ pub(in crate::cli) struct Args {
     /// `--model chiang`.
     #[arg(long, value_name = "FOLDER")]
     pub(super) mitsuba: Option<PathBuf>,
-    /// Strands in all; if not given, as many as the animal has, at most 250000.
+    /// Strands in all; if not given, as many as the animal has, at most 250000. Fewer are wider, to cover
+    /// as much: see `keep_widths` of a species.
     #[arg(long, value_parser = parse_count)]
     pub(super) strands: Option<u64>,
     /// Photons for each scattering table that has to be baked.

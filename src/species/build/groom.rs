@@ -1,6 +1,6 @@
 //! How a hair class grows.
 
-use super::{Reader, number, numbers, place_of, table as table_of};
+use super::{Reader, flag, number, numbers, place_of, table as table_of};
 use crate::species::check::Checked;
 use crate::species::model::{
     Arrangement, ClassGroom, Collision, Comb, HairClass, Pores, SharedGroom,
@@ -58,6 +58,7 @@ impl Reader<'_> {
         SharedGroom {
             comb: table_of(groom, "comb").map_or_else(Comb::default, |comb| self.comb(comb)),
             pores: table_of(groom, "pores").and_then(|pores| self.pores(pores, classes)),
+            keep_widths: flag(groom, "keep_widths").unwrap_or(false),
             symmetry: number(groom, "symmetry").unwrap_or(0.0),
             collision: match word(groom, "collision") {
                 Some("exact") => Collision::Exact,

@@ -216,6 +216,13 @@ pub(crate) fn tables<'a>(parent: &'a Checked, key: &str) -> Option<&'a [Checked]
     }
 }
 
+pub(crate) fn flag(parent: &Checked, key: &str) -> Option<bool> {
+    match parent.get(key)?.value {
+        Value::Flag(flag) => Some(flag),
+        _ => None,
+    }
+}
+
 pub(crate) fn number(parent: &Checked, key: &str) -> Option<f64> {
     parent.get(key).and_then(number_of)
 }

@@ -146,6 +146,12 @@ pub(super) static SHARED: Shape = Shape {
             "Hairs leave the skin in groups; each by itself when left out.",
         ),
         Field::optional(
+            "keep_widths",
+            Kind::Flag,
+            "Whether strands keep their width where fewer are asked for than grow by default; when left out they are \
+             widened, so that a preview covers as much.",
+        ),
+        Field::optional(
             "symmetry",
             Kind::Setting(number(0.0, 1.0, "")),
             "How alike both sides of the body are in the patterns of its coat and in noises that vary its hair: 0, \

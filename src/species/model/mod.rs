@@ -144,6 +144,9 @@ pub struct SharedGroom {
     /// Groups in which hairs leave the skin; `None` if each does by itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pores: Option<Pores>,
+    /// Whether strands fewer than by default keep the width that an opaque coat asks for; else they are
+    /// widened to cover as much as the default ones.
+    pub keep_widths: bool,
     /// How alike both sides of a body are in patterns and noises, 0 each its own .. 1 mirror images.
     pub symmetry: f64,
     /// How strands are held against the skin.
