@@ -2,7 +2,8 @@
 
 use crate::accel::Ray;
 use crate::sampling::concentric_disk;
-use glam::{Mat3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
+use rayon::prelude::*;
 
 /// How to look at the subject. Angles in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,9 +70,14 @@ pub struct Camera {
 impl Camera {
     /// Frames a cloud of points.
     ///
-    /// * `points`: what has to be inside the picture, scene units; finite.
+    /// * `points`: what has to be inside the picture by batches, which several threads look at; scene units, finite.
     /// * `aspect`: width over height of the picture.
-    pub fn framing(points: &[Vec3], view: &View, aspect: f32) -> Self {
+    pub fn framing<P: Iterator<Item = Vec3>>(
+        batches: usize,
+        points: impl Fn(usize) -> P + Sync,
+        view: &View,
+        aspect: f32,
+    ) -> Self {
         let (yaw, pitch) = (view.yaw_deg.to_radians(), view.pitch_deg.to_radians());
         let backward = Vec3::new(
             yaw.sin() * pitch.cos(),
@@ -82,18 +88,29 @@ impl Camera {
         let axes = Mat3::from_cols(right, backward.cross(right), backward);
         let short = (0.5 * view.fov_deg.to_radians()).tan();
         let half = [short * aspect.max(1.0), short / aspect.min(1.0)];
-        let (position, radius) = place(points, axes, half.map(|h| h * (1.0 - 2.0 * view.margin)));
+        let inner = half.map(|h| h * (1.0 - 2.0 * view.margin));
+        let (position, radius) = place(batches, &points, axes, inner);
         // Zooming narrows the view rather than walking up to the fur: the perspective stays.
         let half = half.map(|h| h / view.zoom);
-        let depth = |p: &Vec3| (position - *p).dot(backward);
-        let nearest = points.iter().map(depth).reduce(f32::min);
+        let nearest = || {
+            let depth = |p: Vec3| (position - p).dot(backward);
+            let nearest = |batch| points(batch).map(depth).reduce(f32::min);
+            (0..batches)
+                .into_par_iter()
+                .filter_map(nearest)
+                .reduce_with(f32::min)
+        };
         let shift = axes * Vec3::new(view.shift[0], view.shift[1], 0.0) * radius;
         Self {
             position: position + shift,
             axes,
             half,
             lens: 0.5 * view.lens,
-            focus: view.focus.or(nearest).unwrap_or(1.0).max(1e-3),
+            focus: match view.focus {
+                Some(focus) => focus.max(1e-3),
+                None if view.lens > 0.0 => nearest().unwrap_or(1.0).max(1e-3),
+                None => 1.0,
+            },
         }
     }
 
@@ -170,26 +187,39 @@ impl Camera {
 ///
 /// A point at (x, y, z) relative to a target is inside if `|x| <= half (distance - z)`: the bound
 /// of all points is a pair of planes each way, and the camera stands where both pairs cross.
-fn place(points: &[Vec3], axes: Mat3, half: [f32; 2]) -> (Vec3, f32) {
-    if points.is_empty() {
+fn place<P: Iterator<Item = Vec3>>(
+    batches: usize,
+    points: &(impl Fn(usize) -> P + Sync),
+    axes: Mat3,
+    half: [f32; 2],
+) -> (Vec3, f32) {
+    let sum = |batch| {
+        points(batch).fold((DVec3::ZERO, 0.0), |(sum, n), p| {
+            (sum + p.as_dvec3(), n + 1.0)
+        })
+    };
+    // Added up in the order of the batches, whatever thread was the first.
+    let sums: Vec<(DVec3, f64)> = (0..batches).into_par_iter().map(sum).collect();
+    let (sum, n) = sums
+        .iter()
+        .fold((DVec3::ZERO, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
+    if n == 0.0 {
         return (axes.z_axis, 1.0);
     }
+    let center = (sum / n).as_vec3();
     let local = axes.transpose();
-    let n = points.len() as f64;
-    let mean = points.iter().map(|p| p.as_dvec3()).sum::<glam::DVec3>() / n;
-    let center = mean.as_vec3();
-    // Along each film axis: the farthest any point reaches beyond a ray of the frame's edge.
-    let (mut high, mut low) = ([f32::MIN; 2], [f32::MIN; 2]);
-    let (mut radius, mut front) = (0.0f32, f32::MIN);
-    for point in points {
-        let p = local * (*point - center);
-        radius = radius.max(p.length());
-        front = front.max(p.z);
-        for i in 0..2 {
-            high[i] = high[i].max(p[i] + half[i] * p.z);
-            low[i] = low[i].max(-p[i] + half[i] * p.z);
-        }
-    }
+    // Along each film axis how far points reach beyond a ray of either edge of the frame; radius and front.
+    let extremes = |batch| {
+        points(batch).fold([f32::MIN; 6], |most, point| {
+            let p = local * (point - center);
+            let high = [p.x + half[0] * p.z, p.y + half[1] * p.z];
+            let low = [-p.x + half[0] * p.z, -p.y + half[1] * p.z];
+            farther(most, [high[0], high[1], low[0], low[1], p.length(), p.z])
+        })
+    };
+    let most = (0..batches).into_par_iter().map(extremes);
+    let [h0, h1, l0, l1, radius, front] = most.reduce(|| [f32::MIN; 6], farther);
+    let (high, low) = ([h0, h1], [l0, l1]);
     let offset = [0, 1].map(|i| 0.5 * (high[i] - low[i]));
     let distance = [0, 1].map(|i| 0.5 * (high[i] + low[i]) / half[i]);
     let radius = radius.max(1e-3);
@@ -198,10 +228,20 @@ fn place(points: &[Vec3], axes: Mat3, half: [f32; 2]) -> (Vec3, f32) {
     (center + axes * local_position, radius)
 }
 
+fn farther(a: [f32; 6], b: [f32; 6]) -> [f32; 6] {
+    std::array::from_fn(|i| a[i].max(b[i]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sampling::Rng;
+
+    /// In batches of 64.
+    fn framing(points: &[Vec3], view: &View, aspect: f32) -> Camera {
+        let batches: Vec<&[Vec3]> = points.chunks(64).collect();
+        Camera::framing(batches.len(), |b| batches[b].iter().copied(), view, aspect)
+    }
 
     #[test]
     fn the_subject_fills_the_frame_and_stays_inside() {
@@ -217,7 +257,7 @@ mod tests {
                     pitch_deg,
                     ..View::default()
                 };
-                let camera = Camera::framing(&points, &view, aspect);
+                let camera = framing(&points, &view, aspect);
                 let (mut lo, mut hi) = ([1.0f32; 2], [0.0f32; 2]);
                 for p in &points {
                     let at = camera.project(*p).unwrap();
@@ -243,7 +283,7 @@ mod tests {
             focus: Some(3.0),
             ..View::default()
         };
-        let camera = Camera::framing(&points, &view, 1.5);
+        let camera = framing(&points, &view, 1.5);
         let middle = camera.ray(0.3, 0.6);
         let sharp = middle.origin + middle.dir * (3.0 / -middle.dir.dot(camera.axes.z_axis));
         let mut spread = 0.0f32;
@@ -258,7 +298,7 @@ mod tests {
         }
         assert!(spread > 0.2, "{spread}");
         // The nearest point of the subject is sharp if nothing is said, and a pinhole has no lens.
-        let camera = Camera::framing(
+        let camera = framing(
             &points,
             &View {
                 focus: None,
@@ -270,7 +310,7 @@ mod tests {
             .map(|p| (camera.position - *p).dot(camera.axes.z_axis))
             .fold(f32::MAX, f32::min);
         assert!((camera.focus - nearest).abs() < 1e-4);
-        let pinhole = Camera::framing(&points, &View::default(), 1.5);
+        let pinhole = framing(&points, &View::default(), 1.5);
         assert!(
             !pinhole.has_lens()
                 && pinhole.ray_through(0.1, 0.1, [0.9; 2]).origin == pinhole.position
@@ -279,7 +319,7 @@ mod tests {
 
     #[test]
     fn rays_go_where_points_project() {
-        let camera = Camera::framing(&[Vec3::ZERO, Vec3::ONE], &View::default(), 1.5);
+        let camera = framing(&[Vec3::ZERO, Vec3::ONE], &View::default(), 1.5);
         for (x, y) in [(0.5, 0.5), (0.1, 0.9), (0.99, 0.3)] {
             let ray = camera.ray(x, y);
             let at = camera.project(ray.origin + 3.0 * ray.dir).unwrap();
@@ -289,7 +329,7 @@ mod tests {
 
     #[test]
     fn a_single_point_is_framed() {
-        let camera = Camera::framing(&[Vec3::ONE; 3], &View::default(), 1.0);
+        let camera = framing(&[Vec3::ONE; 3], &View::default(), 1.0);
         assert!(camera.project(Vec3::ONE).is_some());
     }
 }

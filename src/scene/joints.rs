@@ -5,6 +5,7 @@ use super::flatten::flatten;
 use super::strands::UNITS_PER_METER;
 use crate::accel::LIMIT;
 use crate::groom::Groom;
+use crate::pages;
 use glam::{Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
@@ -35,13 +36,21 @@ impl Joints {
             .into_par_iter()
             .map(|b| cut(groom, b * BATCH..((b + 1) * BATCH).min(count)))
             .collect();
-        let mut all = Self::default();
+        let total = |of: fn(&Self) -> usize| batches.iter().map(of).sum();
+        // Without room for all of it from the start it would be in memory three times.
+        let mut all = Self {
+            joints: Vec::with_capacity(total(|b| b.joints.len())),
+            at: Vec::with_capacity(total(|b| b.at.len())),
+            count: Vec::with_capacity(count),
+            length_mm: Vec::with_capacity(count),
+        };
         for batch in batches {
             all.joints.extend(batch.joints);
             all.at.extend(batch.at);
             all.count.extend(batch.count);
             all.length_mm.extend(batch.length_mm);
         }
+        pages::give_back();
         let is_far = |j: &Vec4| !j.is_finite() || j.abs().max_element() > LIMIT;
         match all.joints.iter().copied().find(is_far) {
             Some(far) => Err(SceneError::Coordinates { at: far.xyz() }),

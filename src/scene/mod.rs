@@ -32,6 +32,10 @@ use crate::color::Rgb;
 use crate::groom::Groom;
 use crate::skin::Skin;
 use glam::{Vec3, Vec4Swizzles};
+use rayon::prelude::*;
+
+/// Leaves that are looked at together where several threads look at all.
+const BATCH: usize = 4096;
 
 /// What a scene is made of.
 pub struct SceneParts<'a> {
@@ -137,8 +141,10 @@ impl Scene {
             backdrop: parts.backdrop,
             view: parts.view,
         };
-        let bounds = scene.subject().map(|p| (p, p));
-        let Some((lo, hi)) = bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else {
+        let wider = |a: (Vec3, Vec3), b: (Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
+        let bounds = |batch| scene.subject(batch).map(|p| (p, p)).reduce(wider);
+        let batches = (0..scene.batches()).into_par_iter();
+        let Some((lo, hi)) = batches.filter_map(bounds).reduce_with(wider) else {
             return Err(SceneError::Empty);
         };
         let center = 0.5 * (lo + hi);
@@ -165,8 +171,7 @@ impl Scene {
 
     /// The camera for a picture of a given width over height.
     pub fn camera(&self, aspect: f32) -> Camera {
-        let points: Vec<Vec3> = self.subject().collect();
-        Camera::framing(&points, &self.view, aspect)
+        Camera::framing(self.batches(), |b| self.subject(b), &self.view, aspect)
     }
 
     /// Mean radiance over all directions, in the middle of the subject.
@@ -211,14 +216,18 @@ impl Scene {
             || self.surface.as_ref().is_some_and(|s| s.occluded(ray, far))
     }
 
-    /// Points that have to be in the picture.
-    fn subject(&self) -> impl Iterator<Item = Vec3> {
-        let strands = self.strands.joints().map(|(_, j)| j.xyz());
-        let skin = self
-            .surface
-            .iter()
-            .flat_map(|s| s.corners().iter().flatten().copied());
-        strands.chain(skin)
+    fn batches(&self) -> usize {
+        1 + self.strands.tree().leaves().div_ceil(BATCH)
+    }
+
+    /// Points that have to be in the picture: the skin's, then those of some leaves of the tree a batch.
+    fn subject(&self, batch: usize) -> impl Iterator<Item = Vec3> {
+        let first = batch.saturating_sub(1) * BATCH;
+        let tree = self.strands.tree();
+        let end = (batch * BATCH).min(tree.leaves());
+        let strands = tree.joints(first..end).map(|joint| joint.xyz());
+        let skin = self.surface.iter().filter(move |_| batch == 0);
+        strands.chain(skin.flat_map(|s| s.corners().iter().flatten().copied()))
     }
 }
 

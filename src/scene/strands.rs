@@ -56,7 +56,7 @@ struct Strand {
 }
 
 /// What a strand says of each of its runs.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Place {
     strand: u32,
     class: u8,
@@ -65,7 +65,7 @@ struct Place {
 
 /// What shading has to know of a run, together: one line of a cache a hit, where arrays of each cost four and
 /// tangents from neighboring joints up to three leaves.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Course {
     place: Place,
     /// Position along the strand of its joints, in 65535ths.
@@ -75,6 +75,9 @@ struct Course {
 }
 
 const AT_STEPS: f32 = 65_535.0;
+
+/// Strands of which courses are made at once; few, so that they take no memory to speak of beside the table.
+const AT_ONCE: usize = 1 << 16;
 
 /// Strands ready for tracing. Joints are numbered in the order of strands, root first, and segments by the
 /// joint they start at. Where joints are is known to the tree alone.
@@ -109,6 +112,7 @@ impl Strands {
                 runs.push(Run {
                     joint: joint + first,
                     segments: (count - 1 - first).min(2) as u8,
+                    is_last: first + 3 >= count,
                 });
             }
             joint += count;
@@ -119,7 +123,7 @@ impl Strands {
         let tree = Tree::build(&all.joints, &runs, &copies);
         let copied: usize = copies.iter().map(|&(r, _)| segments_of(&runs, r)).sum();
         let segments = runs.iter().map(|r| usize::from(r.segments)).sum::<usize>() - copied;
-        let courses = (0..count).into_par_iter().flat_map_iter(|strand| {
+        let of_strand = |strand: usize| {
             let joints = first_joint[strand] as usize..first_joint[strand + 1] as usize;
             let place = Place {
                 strand: strand as u32,
@@ -127,8 +131,14 @@ impl Strands {
                 coat: groom.coat.get(strand).copied().unwrap_or_default(),
             };
             courses(place, &all.joints[joints.clone()], &all.at[joints])
+        };
+        let courses = Table::filled(runs.len(), &Course::default(), |table| {
+            for first in (0..count).step_by(AT_ONCE) {
+                let strands = first..count.min(first + AT_ONCE);
+                let some: Vec<Course> = strands.into_par_iter().flat_map_iter(of_strand).collect();
+                table.extend(some);
+            }
         });
-        let courses: Vec<Course> = courses.collect();
         let strand = |i: usize| Strand {
             id: groom.id.get(i).copied().unwrap_or(i as u32),
             root_uv: groom.root_uv.get(i).copied().unwrap_or_default(),
@@ -136,7 +146,7 @@ impl Strands {
         Ok(Self {
             first_joint,
             first_run,
-            courses: Table::new(courses),
+            courses,
             length_mm: all.length_mm,
             strands: (0..count).map(strand).collect(),
             sides: Vec::new(),
@@ -152,7 +162,7 @@ impl Strands {
         let mut sides = Vec::new();
         for strand in 0..self.strands.len() as u32 {
             let mut last: Option<(Vec3, Vec3)> = None;
-            for joint in 0..self.joints_of(strand) {
+            for joint in 0..self.joint_count(strand) {
                 let (run, k) = self.run_of(strand, joint);
                 let tangent = octahedral::decode(self.courses[run as usize].tangents[k]);
                 let carried = match last {
@@ -179,11 +189,16 @@ impl Strands {
     /// millimeters, half width in w.
     pub fn joints(&self) -> impl Iterator<Item = (u32, Vec4)> + '_ {
         let strands = 0..self.strands.len() as u32;
-        strands.flat_map(move |s| (0..self.joints_of(s)).map(move |j| (s, self.joint(s, j))))
+        strands.flat_map(move |s| (0..self.joint_count(s)).map(move |j| (s, self.joint(s, j))))
+    }
+
+    /// The tree, whose leaves have the joints in the order in which they lie in memory.
+    pub(super) fn tree(&self) -> &Tree {
+        &self.tree
     }
 
     /// Number of joints of a strand; none if it has no length.
-    fn joints_of(&self, strand: u32) -> u32 {
+    fn joint_count(&self, strand: u32) -> u32 {
         self.first_joint[strand as usize + 1] - self.first_joint[strand as usize]
     }
 

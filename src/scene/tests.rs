@@ -35,6 +35,22 @@ fn tangle(strands: u32, step_mm: f32) -> Groom {
     groom
 }
 
+/// Strands of odd and of even numbers of segments.
+#[test]
+fn leaves_have_each_joint_once() {
+    for strands in [1, 7, 900] {
+        let strands = Strands::build(&tangle(strands, 2.0)).unwrap();
+        let bits = |joint: Vec4| joint.to_array().map(f32::to_bits);
+        let mut of_leaves: Vec<_> = (strands.tree().joints(0..strands.tree().leaves()))
+            .map(bits)
+            .collect();
+        let mut of_strands: Vec<_> = strands.joints().map(|(_, joint)| bits(joint)).collect();
+        of_leaves.sort_unstable();
+        of_strands.sort_unstable();
+        assert!(of_leaves == of_strands);
+    }
+}
+
 #[test]
 fn the_tree_finds_what_a_search_of_all_segments_finds() {
     let strands = Strands::build(&tangle(400, 2.0)).unwrap();

@@ -25,6 +25,8 @@ pub(super) struct Run {
     /// The joint at which it begins.
     pub(super) joint: u32,
     pub(super) segments: u8,
+    /// Whether the strand ends with it.
+    pub(super) is_last: bool,
 }
 
 /// Nodes one below the other at most: in the lowest ones runs are halved evenly, whatever that costs.
@@ -68,8 +70,8 @@ impl Tree {
         let kept = (0..runs.len() as u32).filter(|run| copied.next_if_eq(run).is_none());
         let draft = build::build(joints, runs, kept.collect());
         let mut places = vec![0; runs.len()];
-        for (l, leaf) in draft.leaves.iter().enumerate() {
-            for (k, run) in leaf.numbers() {
+        for l in 0..draft.leaves.len() {
+            for (k, run) in draft.leaves[l].numbers() {
                 places[run as usize] = (l * leaf::RUNS + k) as u32;
             }
         }
@@ -77,10 +79,20 @@ impl Tree {
             places[run as usize] = places[like as usize];
         }
         Self {
-            nodes: Table::new(draft.nodes),
-            leaves: Table::new(draft.leaves),
+            nodes: draft.nodes,
+            leaves: draft.leaves,
             places,
         }
+    }
+
+    /// Number of leaves.
+    pub(super) fn leaves(&self) -> usize {
+        self.leaves.len()
+    }
+
+    /// All joints of the runs in some leaves, each joint of a strand once.
+    pub(super) fn joints(&self, leaves: std::ops::Range<usize>) -> impl Iterator<Item = Vec4> + '_ {
+        leaves.flat_map(|leaf| self.leaves[leaf].joints())
     }
 
     /// The joint of a run, `0..=2`.

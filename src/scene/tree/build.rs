@@ -8,6 +8,7 @@
 use super::leaf::{Leaf, RUNS};
 use super::node::{CHILDREN, Child, Node};
 use super::{DEPTH, Run};
+use crate::pages::{self, Table};
 use glam::{Mat3, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
@@ -24,19 +25,25 @@ const SOME: usize = 256;
 
 /// Nodes, the root first, and leaves.
 pub(super) struct Draft {
-    pub(super) nodes: Vec<Node>,
-    pub(super) leaves: Vec<Leaf>,
+    pub(super) nodes: Table<Node>,
+    pub(super) leaves: Table<Leaf>,
 }
 
 /// * `numbers`: of the runs that are in the tree.
-pub(super) fn build(joints: &[Vec4], runs: &[Run], mut numbers: Vec<u32>) -> Draft {
+pub(super) fn build(joints: &[Vec4], runs: &[Run], numbers: Vec<u32>) -> Draft {
     if numbers.is_empty() {
         return Draft {
-            nodes: Vec::new(),
-            leaves: Vec::new(),
+            nodes: Table::default(),
+            leaves: Table::default(),
         };
     }
-    let root = Fur { joints, runs }.branch(&mut numbers, 0, 0);
+    let fur = Fur { joints, runs };
+    let axes = Mat3::IDENTITY;
+    let mut items: Vec<Item> = (numbers.into_par_iter())
+        .map(|number| fur.item(number, &axes))
+        .collect();
+    let root = fur.branch(&mut items, &axes, 0, 0);
+    let numbers: Vec<u32> = items.into_par_iter().map(|item| item.number).collect();
     let (mut nodes, mut leaves) = (vec![None], Vec::new());
     let mut open = vec![(0, &root)];
     while let Some((number, branch)) = open.pop() {
@@ -56,11 +63,13 @@ pub(super) fn build(joints: &[Vec4], runs: &[Run], mut numbers: Vec<u32>) -> Dra
         let children: Vec<Child> = branch.parts.iter().map(|part| part.child).collect();
         nodes[number] = Some(Node::new(&branch.axes, &children, first));
     }
+    let nodes = Table::new(nodes.into_iter().flatten().collect());
+    drop(root);
+    pages::give_back();
+    let leaf = |(from, to): (usize, usize)| Leaf::new(joints, runs, &numbers[from..to]);
     Draft {
-        nodes: nodes.into_iter().flatten().collect(),
-        leaves: (leaves.into_par_iter())
-            .map(|(from, to)| Leaf::new(joints, runs, &numbers[from..to]))
-            .collect(),
+        nodes,
+        leaves: Table::collect(&leaf(leaves[0]), leaves.par_iter().map(|&l| leaf(l))),
     }
 }
 
@@ -176,11 +185,22 @@ impl Fur<'_> {
         bounds
     }
 
+    /// * `axes`: columns.
+    fn item(&self, number: u32, axes: &Mat3) -> Item {
+        Item {
+            bounds: self.bounds(number, &axes.transpose()),
+            number,
+        }
+    }
+
     /// Axes, as columns, along which boxes are small.
-    fn axes(&self, numbers: &[u32]) -> Mat3 {
-        let some = || numbers.iter().step_by(numbers.len().div_ceil(SOME));
+    fn axes(&self, items: &[Item]) -> Mat3 {
+        let some = || {
+            let step = items.len().div_ceil(SOME);
+            items.iter().step_by(step).map(|item| item.number)
+        };
         let mut along = Vec3::ZERO;
-        for &number in some() {
+        for number in some() {
             let joints = self.joints_of(number);
             along += joints[joints.len() - 1].xyz() - joints[0].xyz();
         }
@@ -190,7 +210,7 @@ impl Fur<'_> {
         let (x, y) = along.any_orthonormal_pair();
         let axes = Mat3::from_cols(x, y, along);
         let area = |local: &Mat3| {
-            let boxes = some().map(|&number| self.bounds(number, local));
+            let boxes = some().map(|number| self.bounds(number, local));
             let none = (0.0f32, Bounds::NONE);
             let (sum, all) = boxes.fold(none, |(sum, all), b| (sum + b.area(), all.with(b)));
             sum * all.area()
@@ -201,19 +221,28 @@ impl Fur<'_> {
         }
     }
 
-    fn branch(&self, numbers: &mut [u32], begin: usize, depth: usize) -> Branch {
-        let axes = self.axes(numbers);
-        let groups = self.deal(numbers, &axes, depth >= EVEN);
-        let is_many = numbers.len() > MANY;
-        let mut rest = numbers;
-        let mut parts: Vec<(Group, &mut [u32])> = Vec::with_capacity(groups.len());
+    /// * `items`: along `known`, columns; they are sorted and turned, and what is below as well.
+    fn branch(&self, items: &mut [Item], known: &Mat3, begin: usize, depth: usize) -> Branch {
+        let axes = self.axes(items);
+        let is_many = items.len() > MANY;
+        // Near the root axes stay those of the scene, and joints would be far apart in memory.
+        if axes != *known {
+            let turn = |item: &mut Item| *item = self.item(item.number, &axes);
+            match is_many {
+                true => items.par_iter_mut().for_each(turn),
+                false => items.iter_mut().for_each(turn),
+            }
+        }
+        let groups = deal(items, depth >= EVEN);
+        let mut rest = items;
+        let mut parts: Vec<(Group, &mut [Item])> = Vec::with_capacity(groups.len());
         for group in groups {
             let (own, others) = rest.split_at_mut(group.count());
             rest = others;
             parts.push((group, own));
         }
-        let part = |(group, numbers): (Group, &mut [u32])| {
-            let (begin, count) = (begin + group.begin, numbers.len());
+        let part = |(group, items): (Group, &mut [Item])| {
+            let (begin, count) = (begin + group.begin, items.len());
             let leaves = match count <= LEAVES * RUNS {
                 true => count.div_ceil(RUNS),
                 false => 0,
@@ -221,7 +250,8 @@ impl Fur<'_> {
             // Joints of leaves are rounded, by a good deal less than this.
             let Bounds { lo, hi } = group.bounds;
             let room = (hi - lo).max_element() * (1.0 / 16384.0);
-            let below = (leaves == 0).then(|| Box::new(self.branch(numbers, begin, depth + 1)));
+            let below =
+                (leaves == 0).then(|| Box::new(self.branch(items, &axes, begin, depth + 1)));
             let (lo, hi) = (lo - room, hi + room);
             Part {
                 child: Child { lo, hi, leaves },
@@ -236,44 +266,32 @@ impl Fur<'_> {
         };
         Branch { axes, parts }
     }
+}
 
-    /// Sorts runs into the parts of a node.
-    fn deal(&self, numbers: &mut [u32], axes: &Mat3, is_even: bool) -> Vec<Group> {
-        let local = axes.transpose();
-        let item = |&number: &u32| Item {
-            bounds: self.bounds(number, &local),
-            number,
+/// Sorts runs into the parts of a node.
+fn deal(items: &mut [Item], is_even: bool) -> Vec<Group> {
+    let mut groups = vec![Group::new(items, 0, items.len())];
+    while groups.len() < CHILDREN {
+        let size = |i: usize| match is_even {
+            true => groups[i].count() as f32,
+            false => groups[i].bounds.area(),
         };
-        let mut items: Vec<Item> = match numbers.len() > MANY {
-            true => numbers.par_iter().map(item).collect(),
-            false => numbers.iter().map(item).collect(),
+        let largest = |least: usize| {
+            (0..groups.len())
+                .filter(|&i| groups[i].count() > least)
+                .max_by(|&a, &b| size(a).total_cmp(&size(b)).then(b.cmp(&a)))
         };
-        let mut groups = vec![Group::new(&items, 0, items.len())];
-        while groups.len() < CHILDREN {
-            let size = |i: usize| match is_even {
-                true => groups[i].count() as f32,
-                false => groups[i].bounds.area(),
-            };
-            let largest = |least: usize| {
-                (0..groups.len())
-                    .filter(|&i| groups[i].count() > least)
-                    .max_by(|&a, &b| size(a).total_cmp(&size(b)).then(b.cmp(&a)))
-            };
-            let Some(i) = largest(LEAVES * RUNS).or_else(|| largest(RUNS)) else {
-                break;
-            };
-            let whole = groups.swap_remove(i);
-            let first = cut(&mut items[whole.begin..whole.end], &whole.middles, is_even);
-            let middle = whole.begin + first;
-            groups.push(Group::new(&items, whole.begin, middle));
-            groups.push(Group::new(&items, middle, whole.end));
-        }
-        groups.sort_unstable_by_key(|g| g.begin);
-        for (number, item) in numbers.iter_mut().zip(&items) {
-            *number = item.number;
-        }
-        groups
+        let Some(i) = largest(LEAVES * RUNS).or_else(|| largest(RUNS)) else {
+            break;
+        };
+        let whole = groups.swap_remove(i);
+        let first = cut(&mut items[whole.begin..whole.end], &whole.middles, is_even);
+        let middle = whole.begin + first;
+        groups.push(Group::new(items, whole.begin, middle));
+        groups.push(Group::new(items, middle, whole.end));
     }
+    groups.sort_unstable_by_key(|g| g.begin);
+    groups
 }
 
 /// Bins along each axis: what is in them and how many.
@@ -376,14 +394,17 @@ mod tests {
             .map(|i| Run {
                 joint: 2 * i,
                 segments: 1,
+                is_last: true,
             })
             .collect();
         let fur = Fur {
             joints: &joints,
             runs: &runs,
         };
-        let mut numbers: Vec<u32> = (0..count as u32).collect();
-        let groups = fur.deal(&mut numbers, &Mat3::IDENTITY, true);
+        let mut items: Vec<Item> = (0..count as u32)
+            .map(|number| fur.item(number, &Mat3::IDENTITY))
+            .collect();
+        let groups = deal(&mut items, true);
         let counts: Vec<usize> = groups.iter().map(Group::count).collect();
         assert_eq!(counts, [count as usize / CHILDREN; CHILDREN]);
     }

@@ -21,6 +21,8 @@ pub(super) struct Leaf {
     step: [i8; 2],
     /// Which lanes there are, a bit each.
     used: u8,
+    /// Runs with which their strands end, a bit each.
+    last: u8,
     /// Number of each run.
     runs: [u32; RUNS],
 }
@@ -30,7 +32,7 @@ impl Leaf {
     pub(super) fn new(joints: &[Vec4], runs: &[Run], numbers: &[u32]) -> Self {
         let number = |k: usize| numbers[k.min(numbers.len() - 1)];
         let mut all = [Vec4::ZERO; 12];
-        let mut used = 0;
+        let (mut used, mut last) = (0, 0);
         for k in 0..RUNS {
             let run = runs[number(k) as usize];
             for i in 0..3 {
@@ -38,6 +40,7 @@ impl Leaf {
             }
             if k < numbers.len() {
                 used |= (1 << k) | u8::from(run.segments == 2) << (k + 4);
+                last |= u8::from(run.is_last) << k;
             }
         }
         let lo = all.iter().fold(Vec4::INFINITY, |a, b| a.min(*b));
@@ -52,6 +55,7 @@ impl Leaf {
             corner: lo.xyz(),
             step: [place, exponent(hi.w)],
             used,
+            last,
             runs: std::array::from_fn(number),
         };
         let [place, width] = leaf.steps();
@@ -76,6 +80,15 @@ impl Leaf {
         let [place, width] = self.steps();
         let j = self.joints.map(|all| f32::from(all[run + 4 * joint]));
         (self.corner + place * Vec3::new(j[0], j[1], j[2])).extend(width * j[3])
+    }
+
+    /// Joints of all runs: where a run goes on in another that one has the joint.
+    pub(super) fn joints(&self) -> impl Iterator<Item = Vec4> + '_ {
+        self.numbers().flat_map(move |(k, _)| {
+            let segments = 1 + usize::from(self.used >> (k + 4) & 1);
+            let joints = segments + usize::from(self.last >> k & 1);
+            (0..joints).map(move |joint| self.joint(k, joint))
+        })
     }
 
     /// Number of the run of a lane.

@@ -15,6 +15,7 @@ fn runs(strands: &[Vec<Vec4>]) -> (Vec<Vec4>, Vec<Run>) {
             runs.push(Run {
                 joint: (joints.len() + first) as u32,
                 segments: (strand.len() - 1 - first).min(2) as u8,
+                is_last: first + 3 >= strand.len(),
             });
         }
         joints.extend_from_slice(strand);
