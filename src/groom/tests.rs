@@ -7,6 +7,7 @@ use crate::species::{
     ClassGroom, Cuticle, CuticlePattern, HairClass, Medulla, MedullaKind, PigmentBand, Station,
     Structure,
 };
+use glam::Vec2;
 use std::collections::HashMap;
 
 fn class(name: &str, groom: ClassGroom) -> HairClass {
