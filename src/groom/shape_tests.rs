@@ -31,6 +31,42 @@ fn swatch(change: impl Fn(&mut ClassGroom)) -> Groom {
     )
 }
 
+/// What is left of a cut hair is the first part of what it was: bent, pulled to its tuft and straying as far.
+#[test]
+fn cut_hair_keeps_its_shape() {
+    let shaped = |trim_mm: f64| {
+        swatch(|groom| {
+            groom.bend_deg = 60.0;
+            groom.clump = 0.9;
+            groom.frizz_mm = 1.0;
+            groom.trim_mm = trim_mm;
+        })
+    };
+    let (whole, cut) = (shaped(f64::INFINITY), shaped(4.0));
+    assert_eq!(whole.id.len(), cut.id.len());
+    let mut most = 0.0f32;
+    for i in 0..cut.strands() {
+        let Some(k) = whole
+            .id
+            .iter()
+            .position(|id| *id == cut.id[i])
+            .filter(|_| i % 37 == 0)
+        else {
+            continue;
+        };
+        let way = |points: [Vec3; 2], p: Vec3| {
+            let along = points[1] - points[0];
+            let t = ((p - points[0]).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+            p.distance(points[0] + t * along)
+        };
+        let line = whole.strand(k).windows(2);
+        let off = line.map(|p| way([p[0], p[1]], tip(&cut, i)));
+        most = most.max(off.fold(f32::INFINITY, f32::min));
+    }
+    // Chords of so bent a hair are a tenth of a millimeter from it.
+    assert!(most < 3e-4, "{most}");
+}
+
 fn tip(groom: &Groom, i: usize) -> Vec3 {
     let points = groom.strand(i);
     points[points.len() - 1]

@@ -224,18 +224,20 @@ impl<'a> Grower<'a> {
         let curl = Curl::new(&here, step, clump.random[2]);
         let frizz = Frizz::new(&here, root, &luck);
         points[0] = root.position;
+        // What is left of a cut hair has the shape and the profile that it had there.
+        let left = if whole > length { length / whole } else { 1.0 };
         for k in 0..self.points() - 1 {
-            let (from, zeta) = (self.zetas[k], self.zetas[k + 1]);
-            hair = self.step(hair, root, &here, &own, [from, zeta], length);
-            center = self.step(center, root, &here, &tuft, [from, zeta], length);
+            let [from, zeta] = [self.zetas[k], self.zetas[k + 1]].map(|zeta| left * zeta);
+            hair = self.step(hair, root, &here, &own, [from, zeta], whole);
+            center = self.step(center, root, &here, &tuft, [from, zeta], whole);
             let weight = clump_weight(zeta);
             let toward = pull * weight * (center + to_clump - hair) + lock_pull * weight * to_lock;
             let point = hair
                 + toward
-                + crimp.offset(&own, root, zeta * length)
-                + curl.offset(&tuft, root, zeta * length)
+                + crimp.offset(&own, root, zeta * whole)
+                + curl.offset(&tuft, root, zeta * whole)
                 + frizz.offset(zeta);
-            points[k + 1] = self.lift(point, root, zeta * length);
+            points[k + 1] = self.lift(point, root, zeta * whole);
         }
         // Finer where it is shorter, as on faces and paws.
         let finer = root.length.clamp(0.05, 1.0).powf(FINER) * root.vary[VaryWhat::Width];
@@ -243,10 +245,9 @@ impl<'a> Grower<'a> {
             *width = diameter * luck.width * finer;
         }
         let profile = Profile::new(self.class, &root.vary);
-        // What is left of a cut hair has the profile that it had there.
-        if whole > length || profile != self.profile {
+        if left < 1.0 || profile != self.profile {
             for (width, &zeta) in widths.iter_mut().zip(&self.zetas) {
-                let there = profile.at(f64::from(zeta * length / whole)) as f32;
+                let there = profile.at(f64::from(left * zeta)) as f32;
                 *width = self.widest * there * luck.width * finer;
             }
         }
