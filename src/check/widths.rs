@@ -11,6 +11,8 @@ use Severity::{Error, Note, Warning};
 
 /// Diameters that hair has, meters.
 const HAIR: std::ops::RangeInclusive<f64> = 1e-6..=5e-3;
+/// Mean of a level of detail, whose strands may each stand for many: a fox of 5000 strands has a coarsest level of 15 mm.
+const LEVEL: std::ops::RangeInclusive<f64> = 1e-6..=5e-2;
 
 impl Curves<'_> {
     pub(super) fn check_widths(&self, findings: &mut Findings<'_>) {
@@ -87,14 +89,16 @@ impl Curves<'_> {
             sum += width;
             count += 1.0;
         }
-        // Strands that stand for many others in a viewport are wider than hair.
+        let mean = sum / count;
+        // Strands that stand for many others, in a viewport or on a coarser level, are wider than hair.
+        let is_level = findings.view.to_ascii_lowercase().contains("lod=");
         if count == 0.0
             || (HAIR.contains(&least) && HAIR.contains(&most))
             || self.item.purpose == "proxy"
+            || (is_level && LEVEL.contains(&mean))
         {
             return;
         }
-        let mean = sum / count;
         let severity = if HAIR.contains(&mean) { Warning } else { Error };
         let message = format!(
             "diameters are {least:.1e} to {most:.1e} m, {mean:.1e} on average; hair has 1e-6 to 5e-3"

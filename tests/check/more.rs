@@ -215,6 +215,11 @@ fn proxies_may_be_wide() {
         of(&wide.replace("purpose = \"render\"", "purpose = \"proxy\"")),
         0
     );
+    // So may some of a coarser level, but not all of it.
+    for (widths, faults) in [("0.0002, 0.0002, 0.008", 0), ("0.08, 0.08, 0.08", 1)] {
+        let low = edited("[0.0002, 0.0002, 0.0002]", &format!("[{widths}]"));
+        assert_eq!(of(&low), faults);
+    }
     // A few that are too wide or too thin are less than all.
     for width in ["0.008", "0.0000001"] {
         let one = edited("widths = [0.0001,", &format!("widths = [{width},"));
