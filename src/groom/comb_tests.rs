@@ -84,6 +84,15 @@ fn hair_lies_along_a_curve_and_keeps_its_lay_beyond_the_radius() {
     );
 }
 
+/// At a bend of a curve hair lies between the directions before and after it.
+#[test]
+fn bends_of_a_curve_are_halfway_between_its_pieces() {
+    let bent = curve(&[[-0.009, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.009]]);
+    let comb = Comb::new(&bent, &sheet()).unwrap();
+    let halfway = Vec3::new(1.0, 0.0, 1.0).normalize();
+    assert!(lay(&comb, 0.0, 0.0).dot(halfway) > 0.985);
+}
+
 #[test]
 fn hair_turns_about_a_whorl_at_its_angle() {
     for (hand, sense) in [(Hand::CounterClockwise, 1.0), (Hand::Clockwise, -1.0)] {

@@ -6,7 +6,7 @@ use super::walk::Ground;
 use super::{Groom, GroomSettings};
 use crate::progress::{Cancel, Silent};
 use crate::skin::{self, Skin};
-use crate::species::{Arrangement, Pores, Species};
+use crate::species::{Arrangement, CombCurve, Pores, Species};
 use glam::{Vec2, Vec3};
 
 const SPREAD_MM: f64 = 0.4;
@@ -101,6 +101,58 @@ fn guard_hairs_stand_as_single_follicles_do() {
     let guards = grouped.class.iter().filter(|&&c| c == 0).count();
     for i in 0..grouped.strands() {
         assert_eq!(grouped.strand(i) == single.strand(i), i < guards);
+    }
+}
+
+/// Hairs of a group fill their half disc evenly, each in a place of its own, and both pores of a pair that share
+/// theirs have as many in the mean.
+#[test]
+fn hairs_of_a_group_are_spread_evenly() {
+    let skin = skin::load("swatch").unwrap();
+    let groom = natural(&skin, &grouped(Arrangement::Cluster, 1.0));
+    let (roots, groups) = (roots(&groom, 1), groups(&groom));
+    let spread = SPREAD_MM as f32 * 1e-3;
+    let squares = groups
+        .iter()
+        .map(|(_, way)| way.length_squared() / (spread * spread));
+    let mean = squares.sum::<f32>() / groups.len() as f32;
+    assert!((mean - 0.5).abs() < 0.03, "{mean}");
+    let mut sorted: Vec<[u32; 3]> = (roots.iter())
+        .map(|(_, root)| root.to_array().map(f32::to_bits))
+        .collect();
+    sorted.sort_unstable();
+    sorted.dedup();
+    assert_eq!(sorted.len(), roots.len());
+    let odd = groups.iter().filter(|(pore, _)| pore % 2 == 1).count();
+    let share = odd as f32 / groups.len() as f32;
+    assert!((share - 0.5).abs() < 0.05, "{share}");
+}
+
+/// The side to which hair lies is that to which it is combed.
+#[test]
+fn the_undercoat_stands_behind_along_what_combs_it() {
+    let skin = skin::load("swatch").unwrap();
+    let mut species = grouped(Arrangement::Cluster, 0.0);
+    species.groom.comb.curves.push(CombCurve {
+        lines: vec![vec![[0.03, 0.0, 0.0], [-0.03, 0.0, 0.0]]],
+        is_placed: true,
+        radius_mm: 100.0,
+        strength: 1.0,
+    });
+    let groups = groups(&natural(&skin, &species));
+    let mean = groups.iter().map(|(_, way)| *way).sum::<Vec3>() / groups.len() as f32;
+    // The center of a half disc is 4 / (3 pi) of its radius from its diameter.
+    let expected = 4.0 / (3.0 * std::f32::consts::PI) * SPREAD_MM as f32 * 1e-3;
+    assert!(-mean.x > 0.8 * expected, "{mean} for {expected}");
+}
+
+/// Pores come in pairs, whatever the number of hairs.
+#[test]
+fn any_number_of_hairs_is_dealt() {
+    let skin = skin::load("swatch").unwrap();
+    let species = grouped(Arrangement::Row, 1.0);
+    for strands in 1..60 {
+        assert_eq!(grown(&skin, &species, strands, 1).strands(), strands);
     }
 }
 
