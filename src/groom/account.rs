@@ -34,7 +34,10 @@ impl Account {
             (self.short, "would be shorter than thick"),
             (self.thin, "would have no width"),
             (self.sparse, "are where its density is less"),
-            (self.buried, "have no room between folds of the skin"),
+            (
+                self.buried,
+                "have no room between folds of the skin, or above the ground",
+            ),
         ];
         let said = reasons.iter().filter(|(count, _)| *count > 0);
         let reasons: Vec<String> = said.map(|(count, why)| format!("{count} {why}")).collect();

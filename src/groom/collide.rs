@@ -73,7 +73,7 @@ impl Collider {
         }
         let (passage, whole) = farthest;
         match self.cut(triangle, &passage, &whole, points, thickness)
-            || self.stand(triangle, points, thickness)
+            || self.stand(triangle, points, lengths.iter().sum(), thickness)
         {
             true => Contact::Cut,
             false => Contact::Buried,
@@ -146,16 +146,17 @@ impl Collider {
         false
     }
 
-    /// Makes a strand an upright stub; false if there is no room for any.
-    fn stand(&self, triangle: u32, points: &mut [Vec3], thickness: f32) -> bool {
+    /// Makes a strand an upright stub no longer than it was; false if there is no room for any above the ground.
+    fn stand(&self, triangle: u32, points: &mut [Vec3], whole: f32, thickness: f32) -> bool {
         let (root, up) = (points[0], self.barrier.normal(triangle));
         let last = points.len() - 1;
-        let mut length = STUB * thickness;
+        let mut length = whole.min(STUB * thickness);
         while length >= thickness {
             for (k, point) in points.iter_mut().enumerate() {
                 *point = root + up * (length * k as f32 / last as f32);
             }
-            if self.barrier.first(triangle, points).is_none() {
+            let is_above = points[last].y >= self.floor;
+            if is_above && self.barrier.first(triangle, points).is_none() {
                 return true;
             }
             length *= 0.5;

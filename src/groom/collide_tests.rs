@@ -336,6 +336,24 @@ fn hair_without_room_does_not_grow_and_is_counted() {
     }
 }
 
+/// A block whose lower side is a hundredth of a millimeter above the ground.
+#[test]
+fn what_is_cut_is_no_longer_and_not_below_the_ground() {
+    let mut skin = hollow(0.02);
+    skin.normals.iter_mut().for_each(|n| *n = -*n);
+    skin.triangles.iter_mut().for_each(|t| t.reverse());
+    skin.floor = Some(-0.01001);
+    let near = grown(&skin, &fur(Collision::Near), 400, 1);
+    let exact = grown(&skin, &fur(Collision::Exact), 400, 1);
+    assert!(sum(&exact).buried > 20, "{:?}", exact.accounts);
+    let places: HashMap<u32, usize> = near.id.iter().copied().zip(0..).collect();
+    for i in 0..exact.strands() {
+        let was = near.length[places[&exact.id[i]]];
+        assert!(exact.length[i] < 1.2 * was, "{was} {}", exact.length[i]);
+        assert!(exact.strand(i).iter().all(|p| p.y >= -0.01001));
+    }
+}
+
 #[test]
 fn what_is_bent_keeps_its_length() {
     let skin = grooves();
