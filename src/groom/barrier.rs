@@ -9,6 +9,7 @@
 
 use super::GroomError;
 use crate::accel::{AccelError, BinaryNode, Effort, binary_tree};
+use crate::math::spline::bezier_piece;
 use crate::skin::Skin;
 use glam::{DVec3, Vec3, Vec4};
 
@@ -261,21 +262,9 @@ fn normal(corners: &[Vec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or_zero()
 }
 
-/// Bezier points of a piece of a strand: a Catmull-Rom spline, its ends pinned by reflected neighbors.
+/// Bezier points of a piece of a strand.
 pub(super) fn bezier(points: &[Vec3], piece: usize) -> [DVec3; 4] {
-    let at = |i: usize| points[i].as_dvec3();
-    let (b, c) = (at(piece), at(piece + 1));
-    let a = if piece > 0 {
-        at(piece - 1)
-    } else {
-        2.0 * b - c
-    };
-    let d = if piece + 2 < points.len() {
-        at(piece + 2)
-    } else {
-        2.0 * c - b
-    };
-    [b, b + (c - a) / 6.0, c - (d - b) / 6.0, c]
+    bezier_piece::<_, f64>(points.len(), |i| points[i].as_dvec3(), piece)
 }
 
 fn straight(from: DVec3, to: DVec3) -> [DVec3; 4] {

@@ -1,4 +1,4 @@
-//! Maps of cells, frames, turns, triangles, exponentials, steps, unit vectors in 32 bits, the unicube map and Fresnel equations.
+//! Maps of cells, frames, turns, triangles, splines, exponentials, steps, unit vectors in 32 bits, the unicube map and Fresnel equations.
 
 pub(crate) mod cells;
 pub mod decay;
@@ -7,6 +7,7 @@ pub mod frame;
 pub mod fresnel;
 pub mod octahedral;
 pub(crate) mod shear;
+pub(crate) mod spline;
 pub mod symmetry;
 pub(crate) mod triangle;
 pub mod turn;

@@ -1,5 +1,6 @@
 //! Cubic strands cut into straight pieces.
 
+use crate::math::spline::bezier_piece;
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
 /// Longest distance between the cubic and its pieces, in widths. At 0.3 the joints of a strand
@@ -24,17 +25,11 @@ pub(super) fn flatten(points: &[Vec4], out: &mut Vec<Vec4>) {
     let Some(first) = points.first() else { return };
     out.push(*first);
     for i in 0..points.len().saturating_sub(1) {
-        let (b, c) = (points[i], points[i + 1]);
-        let a = if i == 0 { 2.0 * b - c } else { points[i - 1] };
-        let d = match points.get(i + 2) {
-            Some(d) => *d,
-            None => 2.0 * c - b,
-        };
-        let span = [b, b + (c - a) / 6.0, c - (d - b) / 6.0, c];
+        let span = bezier_piece::<_, f32>(points.len(), |i| points[i], i);
         let pieces = pieces_of(&span);
         for k in 1..=pieces {
             let joint = if k == pieces {
-                c
+                span[3]
             } else {
                 // Overshoot of the cubic must not make a width negative.
                 let p = bezier(&span, k as f32 / pieces as f32);

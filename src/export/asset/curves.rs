@@ -1,5 +1,6 @@
 //! Kinds of curves: how control points of the groom become those of a file.
 
+use crate::math::spline::bezier_piece;
 use glam::Vec3;
 use std::ops::{Add, Mul};
 
@@ -49,25 +50,18 @@ impl Curves {
             out.extend(points);
             return;
         }
-        // The curve's ends: the points beyond them mirror their neighbors.
-        let before = 2.0 * points[0] - points[1];
-        let after = 2.0 * points[n - 1] - points[n - 2];
         match self {
             Self::Pinned | Self::Linear => out.extend(points),
             Self::Phantom => {
-                out.push(before);
+                // The points beyond the curve's ends mirror their neighbors.
+                out.push(2.0 * points[0] - points[1]);
                 out.extend(points);
-                out.push(after);
+                out.push(2.0 * points[n - 1] - points[n - 2]);
             }
             Self::Bezier => {
-                let at = |i: usize| match i {
-                    0 => before,
-                    i if i > n => after,
-                    i => points[i - 1],
-                };
                 for i in 0..n - 1 {
-                    let [a, b, c, d] = [at(i), at(i + 1), at(i + 2), at(i + 3)];
-                    out.extend([b, b + (c - a) / 6.0, c - (d - b) / 6.0]);
+                    let piece = bezier_piece::<_, f32>(n, |i| points[i], i);
+                    out.extend(&piece[..3]);
                 }
                 out.push(points[n - 1]);
             }

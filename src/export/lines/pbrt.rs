@@ -2,6 +2,7 @@
 //! ends, so that every span is a curve of its own.
 
 use super::{Lines, WriteError};
+use crate::math::spline::bezier_piece;
 use glam::Vec3;
 use std::io::Write;
 
@@ -23,7 +24,7 @@ pub(super) fn write(out: &mut impl Write, lines: &Lines<'_>) -> Result<(), Write
                 out,
                 "Shape \"curve\" \"string type\" \"cylinder\" \"point3 P\" ["
             )?;
-            for p in bezier(points, i) {
+            for p in bezier_piece::<_, f32>(points.len(), |i| points[i], i) {
                 write!(out, " {} {} {}", p.x, p.y, p.z)?;
             }
             writeln!(out, " ] \"float width0\" {w0} \"float width1\" {w1}")?;
@@ -31,13 +32,4 @@ pub(super) fn write(out: &mut impl Write, lines: &Lines<'_>) -> Result<(), Write
     }
     writeln!(out, "AttributeEnd")?;
     Ok(())
-}
-
-/// The span between points `i` and `i + 1` of a Catmull-Rom spline whose ends are pinned by reflected
-/// neighbors.
-fn bezier(points: &[Vec3], i: usize) -> [Vec3; 4] {
-    let (b, c) = (points[i], points[i + 1]);
-    let a = if i == 0 { 2.0 * b - c } else { points[i - 1] };
-    let d = points.get(i + 2).copied().unwrap_or(2.0 * c - b);
-    [b, b + (c - a) / 6.0, c - (d - b) / 6.0, c]
 }

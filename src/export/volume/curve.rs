@@ -1,5 +1,6 @@
 //! Strands as straight pieces, fine enough for voxels.
 
+use crate::math::spline::bezier_piece;
 use glam::{DVec3, Vec3};
 
 /// Most pieces of one span, a guard against absurd control points.
@@ -63,19 +64,9 @@ impl<'a> Curves<'a> {
     /// * `step`: the pieces stray from the spline by at most an eighth of this, units.
     pub(super) fn joints(&self, i: usize, curve: usize, step: f64, out: &mut Vec<Joint>) {
         let spans = self.spans(curve);
-        let at = |k: usize| self.points[k].as_dvec3();
-        let (b, c) = (at(i), at(i + 1));
-        let a = if i == spans.start {
-            2.0 * b - c
-        } else {
-            at(i - 1)
-        };
-        let d = if i + 1 == spans.end {
-            2.0 * c - b
-        } else {
-            at(i + 2)
-        };
-        let span = [b, b + (c - a) / 6.0, c - (d - b) / 6.0, c];
+        let at = |k: usize| self.points[spans.start + k].as_dvec3();
+        let span = bezier_piece::<_, f64>(spans.len() + 1, at, i - spans.start);
+        let [b, .., c] = span;
         let by_length = (b.distance(c) / (STEPS * step))
             .min(MOST_STEPS / STEPS)
             .ceil();
