@@ -41,7 +41,8 @@ def check_validators(stage, name):
     return len(validators)
 
 
-def check_stage(stage, name):
+def check_stage(stage, name, widest=5e-3):
+    """`widest`: the largest diameter that is sound, in meters."""
     root = stage.GetDefaultPrim()
     if not root or not Usd.ModelAPI(root).IsKind("component"):
         fail(f"{name}: the default prim is no component")
@@ -51,13 +52,13 @@ def check_stage(stage, name):
     for prim in stage.Traverse():
         if prim.IsA(UsdGeom.BasisCurves):
             purposes.add(UsdGeom.Imageable(prim).ComputePurpose())
-            check_curves(UsdGeom.BasisCurves(prim), stage, f"{name} {prim.GetPath()}")
+            check_curves(UsdGeom.BasisCurves(prim), stage, f"{name} {prim.GetPath()}", widest)
     if "render" not in purposes:
         fail(f"{name}: no curves with the purpose render")
     return purposes
 
 
-def check_curves(curves, stage, name):
+def check_curves(curves, stage, name, widest):
     counts = np.array(curves.GetCurveVertexCountsAttr().Get())
     points = np.array(curves.GetPointsAttr().Get())
     widths = np.array(curves.GetWidthsAttr().Get())
@@ -66,7 +67,7 @@ def check_curves(curves, stage, name):
     if curves.GetWidthsInterpolation() != "vertex" or len(widths) != len(points):
         fail(f"{name}: {len(widths)} widths for {len(points)} points")
     meters = widths * UsdGeom.GetStageMetersPerUnit(stage)
-    if not (np.isfinite(points).all() and meters.min() > 1e-7 and meters.max() < 5e-3):
+    if not (np.isfinite(points).all() and meters.min() > 1e-7 and meters.max() < widest):
         fail(f"{name}: points or widths are not sound, widths {meters.min()} to {meters.max()} m")
     half = widths.max() / 2
     extent = np.array(curves.GetExtentAttr().Get())
@@ -168,7 +169,8 @@ def check_coats(stage, path):
             other = [key for key in ours.keys() | theirs.keys() if ours.get(key) != theirs.get(key)]
             if other:
                 fail(f"{path}: {coat} {level} differs from the coat by itself: {sorted(other)[:3]}")
-            check_stage(stage, f"{path} {coat} {level}")
+            # A strand that stands for many is wider than hair.
+            check_stage(stage, f"{path} {coat} {level}", 5e-3 if level == "full" else 5e-2)
         skin = root.GetChild("geo").GetChild("skin").GetAttribute("primvars:displayColor")
         seen.append(np.array(skin.Get()).tobytes())
     if len(set(seen)) < len(seen):
