@@ -4,6 +4,7 @@
 //! the names of its parts; what it means is up to the caller. Nothing is allocated for a count before
 //! the file is known to be long enough for it, and every refusal names the place.
 
+mod catmull_clark;
 mod error;
 mod gltf;
 mod loaded;

@@ -1,16 +1,18 @@
-//! Meshes of a USD stage, with the transforms above them: points, faces, texture coordinates and normals,
-//! which subdivision surfaces have none of.
+//! Meshes of a USD stage, with the transforms above them: points, faces, texture coordinates and normals.
+//! Cages of subdivision surfaces become those surfaces.
 //!
 //! What the file refers to beside it is followed. What renderers do not show (guides, proxies, invisible and
 //! inactive prims) is left out.
 
+mod polygons;
 mod primvar;
 mod stage;
+mod surface;
 
 use super::{MAX_COUNT, MAX_PARTS, MeshFileError, RawMesh};
 use crate::usd_file::{Prim, Specifier, Value, placed, to_meters};
-use glam::{DMat3, DMat4, Vec2, Vec3};
-use primvar::{Primvar, floats};
+use glam::{DMat4, Vec2, Vec3};
+use polygons::Polygons;
 use std::collections::HashMap;
 
 /// Reads the bytes of a file. `file` is its path: for messages, and to find what lies beside it.
@@ -28,6 +30,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
         lacks_uv: false,
         has_normals: false,
         inherits: false,
+        remarks: Vec::new(),
     };
     for prim in &stage.roots {
         reader.visit(prim, "", to_meters(&stage.layer))?;
@@ -51,6 +54,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
         mesh.normals.clear();
     }
     mesh.remarks = stage.remarks;
+    mesh.remarks.extend(reader.remarks);
     Ok(mesh)
 }
 
@@ -61,6 +65,8 @@ struct Reader<'a> {
     has_normals: bool,
     /// Whether a prim takes something from another in a way that is not followed.
     inherits: bool,
+    /// What meshes are taken otherwise than they are meant, a sentence each.
+    remarks: Vec<String>,
 }
 
 impl Reader<'_> {
@@ -97,57 +103,27 @@ impl Reader<'_> {
     }
 
     fn add(&mut self, prim: &Prim, path: &str, placed: DMat4) -> Result<(), MeshFileError> {
-        let points = floats(prim.value("points"), 3);
-        let (counts, indices) = (
-            ints(prim, "faceVertexCounts"),
-            ints(prim, "faceVertexIndices"),
-        );
-        let wanted =
-            (counts.iter()).try_fold(0i64, |sum, &n| (n >= 3).then(|| sum.saturating_add(n)));
-        if wanted != Some(indices.len() as i64) {
-            let counted = wanted.map_or_else(
-                || "a face has fewer than three corners".to_owned(),
-                |n| format!("faces have {n} corners"),
-            );
-            let reason = format!("{counted}, but there are {} indices", indices.len());
-            return Err(self.invalid(path, reason));
-        }
-        let count = points.len() / 3;
-        if let Some(bad) = indices.iter().find(|&&i| !(0..count as i64).contains(&i)) {
-            let reason = format!("a face refers to point {bad} of {count}");
-            return Err(self.invalid(path, reason));
-        }
-        let (uvs, normals) = (Primvar::coordinates(prim), Primvar::normals(prim));
-        self.lacks_uv |= uvs.is_none();
-        self.has_normals |= normals.is_some();
-        let turned = DMat3::from_mat4(placed).inverse().transpose();
+        let cage = Polygons::read(prim, placed).map_err(|reason| self.invalid(path, reason))?;
+        let (polygons, remark) = surface::of(prim, cage);
+        self.remarks
+            .extend(remark.map(|remark| format!("{path} {remark}")));
+        self.lacks_uv |= polygons.uvs.is_none();
+        self.has_normals |= polygons.normals.is_some();
         // Mirrored meshes turn the other way.
         let is_left = prim.value("orientation").and_then(Value::text) == Some("leftHanded");
         let is_turned = is_left != (placed.determinant() < 0.0);
         let part = self.mesh.part_named(path);
         self.limit("parts", self.mesh.names.len(), MAX_PARTS)?;
 
-        let mut vertices: HashMap<(i64, [u32; 2], [u32; 3]), u32> = HashMap::new();
+        let mut vertices: HashMap<(u32, [u32; 2], [u32; 3]), u32> = HashMap::new();
         let mut face = Vec::new();
         let mut corner = 0;
-        for &count in counts {
+        for (&count, &is_hole) in polygons.counts.iter().zip(&polygons.is_hole) {
             face.clear();
             for _ in 0..count {
-                let point = indices[corner];
-                let lacks = |what: &str| {
-                    let reason = format!("corner {corner} has no {what}");
-                    self.invalid(path, reason)
-                };
-                let uv = match &uvs {
-                    Some(uvs) => uvs.at(corner, point as usize).map(Vec2::from_slice),
-                    None => Some(Vec2::ZERO),
-                };
-                let uv = uv.ok_or_else(|| lacks("texture coordinates"))?;
-                let normal = match &normals {
-                    Some(normals) => normals.at(corner, point as usize).map(Vec3::from_slice),
-                    None => Some(Vec3::ZERO),
-                };
-                let normal = normal.ok_or_else(|| lacks("normal"))?;
+                let point = polygons.corners[corner];
+                let uv = polygons.uvs.as_ref().map_or(Vec2::ZERO, |uvs| uvs[corner]);
+                let normal = (polygons.normals.as_ref()).map_or(Vec3::ZERO, |n| n[corner]);
                 let next = self.mesh.positions.len() as u32;
                 let bits = (
                     uv.to_array().map(f32::to_bits),
@@ -155,16 +131,16 @@ impl Reader<'_> {
                 );
                 let vertex = *vertices.entry((point, bits.0, bits.1)).or_insert(next);
                 if vertex == next {
-                    let p = Vec3::from_slice(&points[3 * point as usize..]).as_dvec3();
-                    self.mesh
-                        .positions
-                        .push(placed.transform_point3(p).as_vec3());
+                    let position = polygons.points[point as usize];
+                    self.mesh.positions.push(position.as_vec3());
                     self.mesh.uvs.push(uv);
-                    let normal = turned * normal.as_dvec3();
-                    self.mesh.normals.push(normal.normalize_or_zero().as_vec3());
+                    self.mesh.normals.push(normal);
                 }
                 face.push(vertex);
                 corner += 1;
+            }
+            if is_hole {
+                continue;
             }
             if is_turned {
                 face.reverse();
@@ -177,13 +153,6 @@ impl Reader<'_> {
 
     fn limit(&self, what: &'static str, count: usize, limit: u64) -> Result<(), MeshFileError> {
         MeshFileError::limit(self.file, what, count, limit)
-    }
-}
-
-fn ints<'p>(prim: &'p Prim, name: &str) -> &'p [i64] {
-    match prim.value(name) {
-        Some(Value::Ints(values)) => values,
-        _ => &[],
     }
 }
 
@@ -204,6 +173,7 @@ def Xform "a"
 
     def Mesh "strip"
     {
+        uniform token subdivisionScheme = "none"
         int[] faceVertexCounts = [4, 4]
         int[] faceVertexIndices = [0, 1, 4, 3, 1, 2, 5, 4]
         point3f[] points = [(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 1, 0), (1, 1, 0), (2, 1, 0)]
@@ -247,7 +217,7 @@ def Xform "a"
         let text = STRIP
             .replace(
                 "def Mesh \"strip\"\n    {",
-                "def Mesh \"strip\"\n    {\n        uniform token subdivisionScheme = \"none\"\n\
+                "def Mesh \"strip\"\n    {\n        \
                  normal3f[] normals = [(0, 0, 1), (0, 0, 1), (3, 0, 4), (0, 0, 1), (0, 0, 1), (3, 0, 4)]",
             )
             .replace("xformOp:translate = (0, 0, 100)", "xformOp:scale = (0.5, 1, 1)")

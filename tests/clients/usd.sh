@@ -35,7 +35,7 @@ check_usdz.py)
     environment usdz usd-core==26.5 numpy==2.4.6
     exec "$clients/usdz/bin/python" -B "$here/$command" "$@"
     ;;
-check_blender.py | check_blender_vdb.py)
+check_blender.py | check_blender_vdb.py | check_subdivision.py)
     environment bpy bpy==5.0.1 numpy==1.26.4
     exec "$clients/bpy/bin/python" -B "$here/$command" "$@"
     ;;

@@ -61,8 +61,15 @@ impl<'a> Primvar<'a> {
         })
     }
 
+    /// Of all corners of faces, which are at these points; else the first corner that has none.
+    pub(super) fn of_corners(&self, points: &[u32]) -> Result<Vec<&'a [f32]>, usize> {
+        (points.iter().enumerate())
+            .map(|(corner, &point)| self.at(corner, point as usize).ok_or(corner))
+            .collect()
+    }
+
     /// Of a corner of a face, which is at a point; finite.
-    pub(super) fn at(&self, corner: usize, point: usize) -> Option<&'a [f32]> {
+    fn at(&self, corner: usize, point: usize) -> Option<&'a [f32]> {
         let element = if self.by_corner { corner } else { point };
         let index = match self.indices {
             Some(indices) => usize::try_from(*indices.get(element)?).ok()?,
