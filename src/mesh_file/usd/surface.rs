@@ -12,8 +12,8 @@ use std::collections::HashMap;
 const FACES: usize = 200_000;
 const MOST_LEVELS: usize = 4;
 
-/// With more faces than these the cage is as good as the surface.
-const FINE: usize = 500_000;
+/// A cage of which a first time makes more is as good as its surface.
+const MOST_FACES: usize = 2_000_000;
 
 /// The surface that a mesh stands for, and what is to be said about it.
 pub(super) fn of(prim: &Prim, cage: Polygons) -> (Polygons, Option<String>) {
@@ -28,13 +28,15 @@ pub(super) fn of(prim: &Prim, cage: Polygons) -> (Polygons, Option<String>) {
         }
         _ => return (cage, None),
     }
-    let faces = cage.counts.len();
-    if faces > FINE {
+    // Each corner of a face becomes a face.
+    let corners = cage.corners.len();
+    if corners > MOST_FACES {
+        let faces = cage.counts.len();
         let remark = format!("has {faces} faces and is taken without its subdivision");
         return (cage, Some(remark));
     }
     let mut levels = 1;
-    while levels < MOST_LEVELS && faces << (2 * levels + 2) <= FACES {
+    while levels < MOST_LEVELS && corners << (2 * levels) <= FACES {
         levels += 1;
     }
     (split(prim, &cage, levels), None)
@@ -249,6 +251,32 @@ def Mesh "cube"
             "{:?}",
             other.remarks
         );
+    }
+
+    /// However many corners a single face has.
+    #[test]
+    fn cages_are_split_as_far_as_it_serves() {
+        let faces = |corners: usize| {
+            let list = |item: &dyn Fn(usize) -> String| {
+                (0..corners).map(item).collect::<Vec<_>>().join(", ")
+            };
+            let text = format!(
+                "#usda 1.0\ndef Mesh \"disc\"\n{{\nint[] faceVertexCounts = [{corners}]\n\
+                 int[] faceVertexIndices = [{}]\npoint3f[] points = [{}]\n}}\n",
+                list(&|i| i.to_string()),
+                list(&|i| {
+                    let (sin, cos) = (i as f64 / corners as f64 * std::f64::consts::TAU).sin_cos();
+                    format!("({cos}, {sin}, 0)")
+                }),
+            );
+            let mesh = read("a.usda", text.as_bytes()).unwrap();
+            (mesh.faces, mesh.remarks.len())
+        };
+        assert_eq!(faces(4), (4 << 6, 0));
+        assert_eq!(faces(1000), (1000 << 6, 0));
+        assert_eq!(faces(20_000), (20_000 << 2, 0));
+        assert_eq!(faces(100_000), (100_000, 0));
+        assert_eq!(faces(2_000_001), (1, 1));
     }
 
     #[test]
