@@ -8,7 +8,8 @@
 use super::BsdfSample;
 use crate::color::Rgb;
 use crate::math::fresnel;
-use glam::Vec3;
+use crate::math::quick::{exp, turns};
+use glam::{Vec3, Vec4};
 use std::f32::consts::{FRAC_PI_8, PI, TAU};
 
 /// Lobes: R, TT, TRT, the rest.
@@ -50,6 +51,10 @@ pub struct Chiang {
     sigma_a: Rgb,
     eta: f32,
     lobes: [Longitudinal; LOBES],
+    /// Of each lobe `1 / v`.
+    sharpness: Vec4,
+    /// Of each lobe `1 / (v (1 - exp(-2 / v)))`.
+    norm: Vec4,
     azimuthal: Logistic,
 }
 
@@ -57,8 +62,6 @@ pub struct Chiang {
 #[derive(Clone, Copy, Debug)]
 struct Longitudinal {
     variance: f32,
-    /// `1 / (v (1 - exp(-2 / v)))`.
-    norm: f32,
     /// `exp(-2 / v)`.
     floor: f32,
     /// Sine and cosine of the angle by which scales tilt the query.
@@ -70,7 +73,6 @@ impl Longitudinal {
         let floor = (-2.0 / variance).exp();
         Self {
             variance,
-            norm: 1.0 / (variance * (1.0 - floor)),
             floor,
             tilt: tilt.sin_cos().into(),
         }
@@ -82,15 +84,12 @@ impl Longitudinal {
         [sin * c + cos * s, (cos * c - sin * s).abs()]
     }
 
-    /// Per unit sine of the light's inclination; integrates to 1. The lobe of d'Eon et al. 2011, written
-    /// so that neither the exponential nor the Bessel function overflows.
-    fn density(&self, [sin_q, cos_q]: [f32; 2], sin_i: f32, cos_i: f32) -> f32 {
-        let along = cos_i * cos_q - sin_i * sin_q - 1.0;
-        let a = cos_i * cos_q / self.variance;
-        self.norm * scaled_bessel(a) * (along / self.variance).exp()
+    /// `1 / (v (1 - exp(-2 / v)))`.
+    fn norm(&self) -> f32 {
+        1.0 / (self.variance * (1.0 - self.floor))
     }
 
-    /// Sine of an inclination drawn by [`Self::density`].
+    /// Sine of an inclination drawn by [`longitudinal`].
     fn sample(&self, [sin_q, cos_q]: [f32; 2], u: f32, v: f32) -> f32 {
         let cos = 1.0 + self.variance * (u + (1.0 - u) * self.floor).ln();
         let sin = (1.0 - cos * cos).max(0.0).sqrt();
@@ -98,35 +97,51 @@ impl Longitudinal {
     }
 }
 
-/// `exp(-x) I0(x)` for x >= 0 (Abramowitz and Stegun 9.8.1 and 9.8.2).
-fn scaled_bessel(x: f32) -> f32 {
-    let horner = |coefficients: &[f32], t: f32| coefficients.iter().rfold(0.0, |s, c| s * t + c);
-    if x < 3.75 {
-        const NEAR: [f32; 7] = [
-            1.0,
-            3.515_623,
-            3.089_942_4,
-            1.206_749_2,
-            0.265_973_2,
-            0.036_076_8,
-            0.004_581_3,
-        ];
-        let t = x / 3.75;
-        horner(&NEAR, t * t) * (-x).exp()
-    } else {
-        const FAR: [f32; 9] = [
-            0.398_942_3,
-            0.013_285_92,
-            0.002_253_19,
-            -0.001_575_65,
-            0.009_162_81,
-            -0.020_577_06,
-            0.026_355_37,
-            -0.016_476_33,
-            0.003_923_77,
-        ];
-        horner(&FAR, 3.75 / x) / x.sqrt()
-    }
+/// Lobes of d'Eon et al. 2011 per unit sine of the light's inclination; each integrates to 1.
+///
+/// * `product`: of the cosines of both inclinations. * `along`: cosine of the angle between them less 1.
+///
+/// The exponential of the lobe and that of the Bessel function, neither of which overflows, are one.
+/// `exp(-x) I0(x)` is from Abramowitz and Stegun 9.8.1 and 9.8.2.
+#[inline(always)]
+fn longitudinal(sharpness: Vec4, norm: Vec4, product: Vec4, along: Vec4) -> Vec4 {
+    const NEAR: [f32; 7] = [
+        1.0,
+        3.515_623,
+        3.089_942_4,
+        1.206_749_2,
+        0.265_973_2,
+        0.036_076_8,
+        0.004_581_3,
+    ];
+    const FAR: [f32; 9] = [
+        0.398_942_3,
+        0.013_285_92,
+        0.002_253_19,
+        -0.001_575_65,
+        0.009_162_81,
+        -0.020_577_06,
+        0.026_355_37,
+        -0.016_476_33,
+        0.003_923_77,
+    ];
+    const EDGE: f32 = 3.75;
+    let horner = |coefficients: &[f32], t: Vec4| {
+        let zero = Vec4::ZERO;
+        coefficients.iter().rfold(zero, |sum, &c| sum * t + c)
+    };
+    let x = (product * sharpness).max(Vec4::ZERO);
+    let is_near = x.cmplt(Vec4::splat(EDGE));
+    let near = x.min(Vec4::splat(EDGE)) * (1.0 / EDGE);
+    let far = EDGE / x.max(Vec4::splat(EDGE));
+    let root = far.map(f32::sqrt) * EDGE.sqrt().recip();
+    let series = Vec4::select(
+        is_near,
+        horner(&NEAR, near * near),
+        horner(&FAR, far) * root,
+    );
+    let less = Vec4::select(is_near, x, Vec4::ZERO);
+    norm * series * exp(along * sharpness - less)
 }
 
 /// A logistic distribution trimmed to a full turn.
@@ -136,23 +151,32 @@ struct Logistic {
     /// Probability of the untrimmed one below -pi, and between -pi and pi.
     below: f32,
     between: f32,
+    /// `1 / scale` and `1 / (scale between)`.
+    inverse: f32,
+    norm: f32,
 }
 
 impl Logistic {
     fn new(scale: f32) -> Self {
         let below = 1.0 / (1.0 + (PI / scale).exp());
+        let between = 1.0 - 2.0 * below;
         Self {
             scale,
             below,
-            between: 1.0 - 2.0 * below,
+            between,
+            inverse: 1.0 / scale,
+            norm: 1.0 / (scale * between),
         }
     }
 
-    /// Per radian, at an angle of any number of turns.
-    fn density(&self, angle: f32) -> f32 {
-        let off = angle - TAU * (angle / TAU).round();
-        let e = (-off.abs() / self.scale).exp();
-        e / (self.scale * (1.0 + e) * (1.0 + e) * self.between)
+    /// Per radian, at angles of less than two half turns either way.
+    #[inline(always)]
+    fn density(&self, angle: Vec4) -> Vec4 {
+        let off = angle.abs();
+        let off = off.min(TAU - off);
+        let e = exp(-off * self.inverse);
+        let sum = 1.0 + e;
+        self.norm * e / (sum * sum)
     }
 
     fn sample(&self, u: f32) -> f32 {
@@ -169,15 +193,18 @@ impl Chiang {
         let variance = (0.726 * m + 0.812 * m * m + 3.7 * m.powi(20)).powi(2);
         let scale = FRAC_PI_8.sqrt() * (0.265 * n + 1.194 * n * n + 5.372 * n.powi(22));
         let alpha = p.alpha_deg.to_radians();
+        let lobes = [
+            Longitudinal::new(variance, 2.0 * alpha),
+            Longitudinal::new(0.25 * variance, -alpha),
+            Longitudinal::new(4.0 * variance, -4.0 * alpha),
+            Longitudinal::new(4.0 * variance, 0.0),
+        ];
         Self {
             sigma_a: p.sigma_a,
             eta: p.eta,
-            lobes: [
-                Longitudinal::new(variance, 2.0 * alpha),
-                Longitudinal::new(0.25 * variance, -alpha),
-                Longitudinal::new(4.0 * variance, -4.0 * alpha),
-                Longitudinal::new(4.0 * variance, 0.0),
-            ],
+            sharpness: lobes.map(|lobe| 1.0 / lobe.variance).into(),
+            norm: lobes.map(|lobe| lobe.norm()).into(),
+            lobes,
             azimuthal: Logistic::new(scale),
         }
     }
@@ -199,16 +226,28 @@ impl Chiang {
         let (gamma_i, gamma_t) = (h.asin(), sin_gamma_t.asin());
         let energy = energies(
             fresnel(cos * (1.0 - h * h).sqrt(), self.eta),
-            (-self.sigma_a * crossing).map(f32::exp),
+            exp((-self.sigma_a * crossing).extend(0.0)).truncate(),
         );
-        let total: f32 = energy.iter().map(|e| e.element_sum()).sum();
+        let sums = Vec4::from(energy.map(|e| e.element_sum()));
+        let tilted = self.lobes.map(|lobe| lobe.tilted(sin, cos));
+        let exit = [0.0, 1.0, 2.0].map(|p| near_zero(2.0 * p * gamma_t - 2.0 * gamma_i + p * PI));
+        let [r, tt, trt] = exit;
         ChiangLobe {
             model: self,
             energy,
-            share: energy.map(|e| e.element_sum() / total),
-            tilted: self.lobes.map(|lobe| lobe.tilted(sin, cos)),
-            exit: [0.0, 1.0, 2.0].map(|p| 2.0 * p * gamma_t - 2.0 * gamma_i + p * PI),
+            share: sums / sums.element_sum(),
+            tilted: [0, 1].map(|i| tilted.map(|query| query[i]).into()),
+            exit: Vec4::new(r, tt, trt, 0.0),
         }
+    }
+}
+
+/// An angle of at most three half turns either way, less a full turn if there is one.
+fn near_zero(angle: f32) -> f32 {
+    if angle.abs() > PI {
+        angle - TAU.copysign(angle)
+    } else {
+        angle
     }
 }
 
@@ -229,11 +268,11 @@ pub struct ChiangLobe<'a> {
     model: &'a Chiang,
     energy: [Rgb; LOBES],
     /// Probabilities of the lobes.
-    share: [f32; LOBES],
+    share: Vec4,
     /// Sine and cosine of the query's inclination for each lobe.
-    tilted: [[f32; 2]; LOBES],
-    /// Azimuths about which R, TT and TRT leave.
-    exit: [f32; 3],
+    tilted: [Vec4; 2],
+    /// Azimuths about which R, TT and TRT leave, at most half a turn either way.
+    exit: Vec4,
 }
 
 impl ChiangLobe<'_> {
@@ -241,18 +280,27 @@ impl ChiangLobe<'_> {
     pub fn density_and_pdf(&self, wi: Vec3) -> (Rgb, f32) {
         let sin = wi.z.clamp(-1.0, 1.0);
         let cos = (1.0 - sin * sin).sqrt();
-        let azimuth = wi.y.atan2(wi.x);
-        let (mut density, mut pdf) = (Rgb::ZERO, 0.0);
-        for lobe in 0..LOBES {
-            let along = self.model.lobes[lobe].density(self.tilted[lobe], sin, cos);
-            let around = match self.exit.get(lobe) {
-                Some(exit) => self.model.azimuthal.density(azimuth - exit),
-                None => 1.0 / TAU,
-            };
-            density += self.energy[lobe] * (along * around);
-            pdf += self.share[lobe] * along * around;
-        }
-        (density, pdf)
+        self.toward(sin, cos, TAU * turns(wi.y, wi.x))
+    }
+
+    /// * `sin`, `cos`: of the inclination. * `azimuth`: at most half a turn either way.
+    #[inline(always)]
+    fn toward(&self, sin: f32, cos: f32, azimuth: f32) -> (Rgb, f32) {
+        let Chiang {
+            sharpness,
+            norm,
+            azimuthal,
+            ..
+        } = self.model;
+        let [sin_q, cos_q] = self.tilted;
+        let product = cos * cos_q;
+        let along = longitudinal(*sharpness, *norm, product, product - sin * sin_q - 1.0);
+        let mut around = azimuthal.density(azimuth - self.exit);
+        around.w = 1.0 / TAU;
+        let all = along * around;
+        let [r, tt, trt, rest] = self.energy;
+        let density = r * all.x + tt * all.y + (trt * all.z + rest * all.w);
+        (density, all.dot(self.share))
     }
 
     /// Draws a direction from three numbers in `[0, 1)`.
@@ -264,18 +312,18 @@ impl ChiangLobe<'_> {
         }
         // What is left of the choice is as good as new.
         let rest = (choice / self.share[lobe]).clamp(0.0, 1.0);
+        let query = self.tilted.map(|all| all[lobe]);
         // 1 - u, never 0, for a logarithm.
-        let sin = self.model.lobes[lobe].sample(self.tilted[lobe], 1.0 - along, rest);
+        let sin = self.model.lobes[lobe].sample(query, 1.0 - along, rest);
         let cos = (1.0 - sin * sin).sqrt();
-        let azimuth = match self.exit.get(lobe) {
-            Some(exit) => exit + self.model.azimuthal.sample(around),
-            None => TAU * around,
+        let azimuth = match lobe {
+            3 => near_zero(TAU * around),
+            _ => near_zero(self.exit[lobe] + self.model.azimuthal.sample(around)),
         };
         let (s, c) = azimuth.sin_cos();
-        let wi = Vec3::new(cos * c, cos * s, sin);
-        let (density, pdf) = self.density_and_pdf(wi);
+        let (density, pdf) = self.toward(sin, cos, azimuth);
         (pdf > 0.0 && pdf.is_finite()).then(|| BsdfSample {
-            wi,
+            wi: Vec3::new(cos * c, cos * s, sin),
             weight: density / pdf,
             pdf,
         })

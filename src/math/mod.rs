@@ -6,6 +6,7 @@ pub mod ease;
 pub mod frame;
 pub mod fresnel;
 pub mod octahedral;
+pub(crate) mod quick;
 pub(crate) mod shear;
 pub(crate) mod spline;
 pub mod symmetry;

@@ -190,15 +190,18 @@ impl Scene {
 
     /// The nearest thing in front of a ray.
     pub fn closest(&self, ray: &Ray, leaving: Option<Leaving>) -> Option<Hit> {
+        // Strands before the skin: in fur most rays meet one near where they start. At one distance the strand is
+        // in front.
         let mut limit = f32::INFINITY;
         let mut found = None;
-        if let Some(hit) = self.surface.as_ref().and_then(|s| s.closest(ray, limit)) {
-            limit = hit.t;
-            found = Some(Hit::Surface(hit));
-        }
         if let Some(hit) = self.strands.closest(ray, limit, leaving) {
             limit = hit.t;
             found = Some(Hit::Strand(hit));
+        }
+        let nearer = limit.next_down();
+        if let Some(hit) = self.surface.as_ref().and_then(|s| s.closest(ray, nearer)) {
+            limit = hit.t;
+            found = Some(Hit::Surface(hit));
         }
         if let Some(t) = self.ground.as_ref().and_then(|g| g.hit(ray, limit)) {
             found = Some(Hit::Ground(t));

@@ -158,6 +158,7 @@ impl Tree {
         }
         #[cfg(target_arch = "x86_64")]
         if is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("fma")
             && is_x86_feature_detected!("bmi1")
             && is_x86_feature_detected!("popcnt")
             && is_x86_feature_detected!("lzcnt")
@@ -170,7 +171,7 @@ impl Tree {
     }
 
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,bmi1,popcnt,lzcnt")]
+    #[target_feature(enable = "avx2,fma,bmi1,popcnt,lzcnt")]
     fn search_avx2<const ANY: bool>(
         &self,
         ray: &Line,

@@ -1,22 +1,16 @@
 //! Choice of texels by weight, exact and near in memory.
 //!
-//! Texels are gathered in cells of [`CELL`] by [`CELL`]. A cell is chosen by rows and columns of cells,
-//! whose sums stay in the processor's cache, then a texel by rows and columns of the cell, which lie
-//! together. Every choice is an inversion, so that well-spread numbers give well-spread directions.
+//! Texels are gathered in cells of [`CELL`] by [`CELL`]. A cell is chosen by rows and columns of cells, then
+//! a row of the cell, by sums that stay in the processor's cache; then a texel of the row by the
+//! texels themselves, which the caller reads in any case. Every choice is an inversion, so that well-spread
+//! numbers give well-spread directions. Within a cell single precision is more than is left of the 24
+//! bits of a number once its cell is chosen.
 
+use crate::pages::Table;
 use rayon::prelude::*;
 
 /// Side of a cell, texels.
-const CELL: usize = 8;
-
-/// Cumulative shares of the texels of one cell. Rows and columns beyond the picture have none.
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
-struct Cell {
-    rows: [f64; CELL],
-    /// Along each row.
-    columns: [[f64; CELL]; CELL],
-}
+pub(super) const CELL: usize = 8;
 
 /// A distribution over the texels of a picture.
 #[derive(Clone, Debug)]
@@ -26,7 +20,8 @@ pub(super) struct Distribution {
     rows: Vec<f64>,
     /// The same along each row of cells.
     columns: Vec<f64>,
-    cells: Vec<Cell>,
+    /// The same of the rows of each cell; those beyond the picture have none.
+    cells: Table<[f32; CELL]>,
     total: f64,
 }
 
@@ -38,21 +33,17 @@ impl Distribution {
         weight: impl Fn(usize, usize) -> f64 + Sync,
     ) -> Self {
         let (across, down) = (width.div_ceil(CELL), height.div_ceil(CELL));
-        let (cells, sums): (Vec<Cell>, Vec<f64>) = (0..across * down)
+        let (cells, sums): (Vec<[f32; CELL]>, Vec<f64>) = (0..across * down)
             .into_par_iter()
             .map(|i| {
                 let (x0, y0) = (i % across * CELL, i / across * CELL);
-                let mut columns = [[0.0; CELL]; CELL];
+                let columns = x0..(x0 + CELL).min(width);
                 let mut rows = [0.0; CELL];
-                for (y, (row, sum)) in columns.iter_mut().zip(&mut rows).enumerate() {
-                    for (x, share) in row.iter_mut().enumerate() {
-                        let inside = x0 + x < width && y0 + y < height;
-                        *share = if inside { weight(x0 + x, y0 + y) } else { 0.0 };
-                    }
-                    *sum = accumulate(row);
+                for (y, sum) in (y0..height).zip(&mut rows) {
+                    *sum = columns.clone().map(|x| weight(x, y)).sum();
                 }
                 let sum = accumulate(&mut rows);
-                (Cell { rows, columns }, sum)
+                (rows.map(|share| share as f32), sum)
             })
             .unzip();
         let mut columns = sums;
@@ -62,7 +53,7 @@ impl Distribution {
             across,
             rows,
             columns,
-            cells,
+            cells: Table::new(cells),
             total,
         }
     }
@@ -74,14 +65,26 @@ impl Distribution {
 
     /// Column and row of a texel and the place in it, 0..1 each, from two numbers in `[0, 1)`: texels are
     /// drawn in proportion to their weights. Of no meaning where the total is zero.
-    pub(super) fn sample(&self, u: [f32; 2]) -> ([usize; 2], [f64; 2]) {
+    ///
+    /// * `along`: weights of [`CELL`] texels in a row from this column and row on, 0 beyond the picture, to any one
+    ///   factor a row.
+    #[inline]
+    pub(super) fn sample(
+        &self,
+        u: [f32; 2],
+        along: impl FnOnce(usize, usize) -> [f32; CELL],
+    ) -> ([usize; 2], [f32; 2]) {
         let (row, v) = choose(&self.rows, f64::from(u[1]));
         let columns = &self.columns[row * self.across..(row + 1) * self.across];
         let (column, s) = choose(columns, f64::from(u[0]));
-        let cell = &self.cells[row * self.across + column];
-        let (y, v) = choose(&cell.rows, v);
-        let (x, s) = choose(&cell.columns[y], s);
-        ([column * CELL + x, row * CELL + y], [s, v])
+        let (y, v) = choose_near(&self.cells[row * self.across + column], v as f32);
+        let (x0, y) = (column * CELL, row * CELL + y);
+        let mut weights = along(x0, y);
+        for i in 1..CELL {
+            weights[i] += weights[i - 1];
+        }
+        let (x, s) = choose_near(&weights, s as f32 * weights[CELL - 1]);
+        ([x0 + x, y], [s, v])
     }
 }
 
@@ -115,6 +118,22 @@ fn choose(cumulative: &[f64], u: f64) -> (usize, f64) {
     (i, place.clamp(0.0, 1.0 - 1e-9))
 }
 
+/// The same for the few of a cell, without a search.
+#[inline(always)]
+fn choose_near(cumulative: &[f32; CELL], u: f32) -> (usize, f32) {
+    let mut i: usize = cumulative.iter().map(|&c| usize::from(c <= u)).sum();
+    if i == CELL {
+        i = CELL - 1;
+        while i > 0 && cumulative[i - 1] >= cumulative[i] {
+            i -= 1;
+        }
+    }
+    let low = if i == 0 { 0.0 } else { cumulative[i - 1] };
+    let width = cumulative[i] - low;
+    let place = if width > 0.0 { (u - low) / width } else { 0.5 };
+    (i, place.clamp(0.0, 1.0 - 0.5 * f32::EPSILON))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -130,7 +149,13 @@ mod tests {
             let (net, n) = (Sobol::new(2), 1 << 21);
             for i in 0..n {
                 let u = net.point(i);
-                let ([x, y], place) = chosen.sample([u[0], u[1]]);
+                let along = |x0: usize, y: usize| {
+                    std::array::from_fn(|i| match x0 + i < width {
+                        true => weight(x0 + i, y) as f32,
+                        false => 0.0,
+                    })
+                };
+                let ([x, y], place) = chosen.sample([u[0], u[1]], along);
                 assert!(place.iter().all(|p| (0.0..1.0).contains(p)));
                 seen[y * width + x] += chosen.total() / f64::from(n);
             }

@@ -15,7 +15,8 @@ pub use file::{EnvironmentError, load};
 pub use sky::Sun;
 
 use crate::color::{Rgb, luminance};
-use distribution::Distribution;
+use crate::math::quick::turns;
+use distribution::{CELL, Distribution};
 use glam::Vec3;
 use std::f64::consts::{PI, TAU};
 
@@ -179,10 +180,18 @@ impl Environment {
         if self.inverse_power <= 0.0 {
             return None;
         }
-        let ([column, row], [s, v]) = self.choice.sample(u);
+        let along = |column: usize, row: usize| {
+            let rest = &self.texels[row * self.width + column..(row + 1) * self.width];
+            let mut weights = [0.0; CELL];
+            for (weight, texel) in weights.iter_mut().zip(rest) {
+                *weight = luminance(*texel);
+            }
+            weights
+        };
+        let ([column, row], [s, v]) = self.choice.sample(u, along);
         let (radiance, pdf) = self.texel(row, column);
-        let up = self.edges[row] - v * (self.edges[row] - self.edges[row + 1]);
-        let azimuth = ((column as f64 + s) / self.width as f64 - 0.5) * TAU;
+        let up = self.edges[row] - f64::from(v) * (self.edges[row] - self.edges[row + 1]);
+        let azimuth = ((column as f64 + f64::from(s)) / self.width as f64 - 0.5) * TAU;
         let flat = (1.0 - up * up).max(0.0).sqrt() as f32;
         let (sin, cos) = (azimuth as f32).sin_cos();
         let d = Vec3::new(flat * sin, up as f32, -flat * cos);
@@ -219,27 +228,6 @@ fn texel_direction(x: f64, y: f64) -> Vec3 {
 /// Height (sine of elevation) of the upper edge of a row.
 fn edge(row: usize, height: usize) -> f64 {
     (PI * row as f64 / height as f64).cos()
-}
-
-/// `atan2(y, x)` as a share of a full turn, -0.5..0.5, off by 1e-7 at most: a polynomial, a third of the
-/// price of the library's.
-fn turns(y: f32, x: f32) -> f32 {
-    const ODD: [f32; 8] = [
-        0.999_999_9,
-        -0.333_319_6,
-        0.199_692_35,
-        -0.140_165_85,
-        0.099_060_97,
-        -0.059_367_1,
-        0.024_166_19,
-        -0.004_668_773,
-    ];
-    let (ax, ay) = (x.abs(), y.abs());
-    let a = ax.min(ay) / ax.max(ay).max(f32::MIN_POSITIVE);
-    let t = a * ODD.iter().rfold(0.0, |sum, c| sum * (a * a) + c) * (0.5 / std::f32::consts::PI);
-    let t = if ay > ax { 0.25 - t } else { t };
-    let t = if x < 0.0 { 0.5 - t } else { t };
-    t.copysign(y)
 }
 
 #[cfg(test)]
@@ -336,18 +324,6 @@ mod tests {
             let error = (luminance(mean) / luminance(env.mean()) - 1.0).abs();
             assert!(error < 1e-3, "{error}");
         }
-    }
-
-    #[test]
-    fn turns_are_those_of_the_library() {
-        for i in 0..10_000 {
-            let (sin, cos) = (f64::from(i) * 1e-3 - 5.0).sin_cos();
-            let (y, x) = ((0.7 * sin) as f32, (0.7 * cos) as f32);
-            let exact = f64::from(y).atan2(f64::from(x)) / TAU;
-            assert!((f64::from(turns(y, x)) - exact).abs() < 1e-7, "{y} {x}");
-        }
-        assert_eq!(turns(0.0, 0.0), 0.0);
-        assert_eq!((turns(1.0, 0.0), turns(0.0, -1.0)), (0.25, 0.5));
     }
 
     #[test]

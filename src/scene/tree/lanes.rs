@@ -14,6 +14,8 @@ pub(in crate::scene) trait Lanes {
     fn sub(a: Self::F, b: Self::F) -> Self::F;
     fn mul(a: Self::F, b: Self::F) -> Self::F;
     fn div(a: Self::F, b: Self::F) -> Self::F;
+    /// `a * b + c`, rounded once or twice: the exception, for what need not be the same to the bit.
+    fn mul_add(a: Self::F, b: Self::F, c: Self::F) -> Self::F;
     fn min(a: Self::F, b: Self::F) -> Self::F;
     fn max(a: Self::F, b: Self::F) -> Self::F;
     /// Where `a <= b`, a bit each.
@@ -71,6 +73,11 @@ impl Lanes for Plain {
     }
 
     #[inline(always)]
+    fn mul_add(a: Self::F, b: Self::F, c: Self::F) -> Self::F {
+        Self::add(Self::mul(a, b), c)
+    }
+
+    #[inline(always)]
     fn min(a: Self::F, b: Self::F) -> Self::F {
         [a[0].min(b[0]), a[1].min(b[1])]
     }
@@ -92,7 +99,7 @@ impl Lanes for Plain {
     }
 }
 
-/// For processors with AVX2. To be used within functions that enable it only, without closures between, which would
+/// For processors with AVX2 and FMA. To be used within functions that enable it only, without closures between, which would
 /// not be compiled for it.
 #[cfg(target_arch = "x86_64")]
 pub(in crate::scene) struct Avx2;
@@ -124,6 +131,11 @@ mod avx2 {
         both!(div, _mm256_div_ps);
         both!(min, _mm256_min_ps);
         both!(max, _mm256_max_ps);
+
+        #[inline(always)]
+        fn mul_add(a: __m256, b: __m256, c: __m256) -> __m256 {
+            unsafe { _mm256_fmadd_ps(a, b, c) }
+        }
 
         #[inline(always)]
         fn splat(x: f32) -> __m256 {

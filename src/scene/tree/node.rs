@@ -108,17 +108,31 @@ impl Node {
         let blur = (8.0 * f32::EPSILON) * reach * inverse.abs();
         let (enter, leave) = (start - blur, start + blur);
         let down = inverse.is_negative_bitmask() as usize;
-        let mut begin = L::splat(0.0);
-        let mut end = L::splat(limit);
-        for axis in 0..3 {
-            let near = down >> axis & 1;
-            let [near, far] = [near, near ^ 1].map(|side| &self.planes[axis][side]);
-            let step = L::splat(inverse[axis]);
-            let enters = L::add(L::mul(L::bytes(near), step), L::splat(enter[axis]));
-            let leaves = L::add(L::mul(L::bytes(far), step), L::splat(leave[axis]));
-            begin = L::max(begin, enters);
-            end = L::min(end, leaves);
-        }
+        let [x, y, z] = [0, 1, 2];
+        let x = self.slab::<L>(x, down, inverse[x], enter[x], leave[x]);
+        let y = self.slab::<L>(y, down, inverse[y], enter[y], leave[y]);
+        let z = self.slab::<L>(z, down, inverse[z], enter[z], leave[z]);
+        let begin = L::max(L::max(L::splat(0.0), x.0), L::max(y.0, z.0));
+        let end = L::min(L::min(L::splat(limit), x.1), L::min(y.1, z.1));
         (L::le(begin, end) & u32::from(self.used), begin)
+    }
+
+    /// Where a ray enters what lies between two planes of each box, and leaves it.
+    #[inline(always)]
+    fn slab<L: Lanes>(
+        &self,
+        axis: usize,
+        down: usize,
+        step: f32,
+        enter: f32,
+        leave: f32,
+    ) -> (L::F, L::F) {
+        let near = down >> axis & 1;
+        let (near, far) = (&self.planes[axis][near], &self.planes[axis][near ^ 1]);
+        let step = L::splat(step);
+        (
+            L::mul_add(L::bytes(near), step, L::splat(enter)),
+            L::mul_add(L::bytes(far), step, L::splat(leave)),
+        )
     }
 }
