@@ -1,7 +1,7 @@
-//! A tree over strands: nodes of eight boxes, leaves of eight segments.
+//! A tree over strands: nodes of sixteen boxes, leaves of eight segments.
 //!
-//! A search waits for memory more than for anything else, so everything is small: a node and a leaf are two lines of a
-//! cache each, and a leaf holds all that decides what a ray meets. The answer does not depend on the
+//! A search waits for memory more than for anything else, so everything is small: a node is three lines of a
+//! cache and a leaf two, and a leaf holds all that decides what a ray meets. The answer does not depend on the
 //! shape of the tree, nor on the processor.
 
 mod build;
@@ -30,7 +30,9 @@ pub(super) struct Run {
 }
 
 /// Nodes one below the other at most: in the lowest ones runs are halved evenly, whatever that costs.
-const DEPTH: usize = 24;
+const DEPTH: usize = 16;
+/// No reference.
+const NONE: u32 = u32::MAX;
 /// References set aside at most.
 const STACK: usize = DEPTH * (CHILDREN - 1) + 1;
 
@@ -195,18 +197,22 @@ impl Tree {
         let mut aside = [(0.0f32, 0u32); STACK];
         let mut count = 0;
         let mut next = 0u32;
+        // Leaves that are looked at one step later, when they have come into the cache. The further search goes a
+        // little too far for it, but hardly waits.
+        let mut waiting = NONE;
         loop {
             if next & LEAF == 0 {
                 let node = &self.nodes[next as usize];
                 let (mut met, begin) = node.meets::<L>(ray, limit);
                 if met != 0 {
-                    let begin = L::array(begin);
+                    let [low, high] = begin;
+                    let begin = [L::array(low), L::array(high)];
                     let take = |met: &mut u32| {
                         let k = met.trailing_zeros();
                         *met &= *met - 1;
                         let child = node.child(k);
                         self.fetch(child);
-                        (begin[k as usize & 7], child)
+                        (begin[(k as usize / 8) % 2][k as usize % 8], child)
                     };
                     let mut nearest = take(&mut met);
                     let bottom = count;
@@ -227,20 +233,24 @@ impl Tree {
                     continue;
                 }
             } else {
-                let first = next & !(LEAF | PAIR);
-                for leaf in first..=first + (next & PAIR != 0) as u32 {
-                    if self.meet::<L>(leaf, ray, ignored, &mut limit, &mut found)
-                        && let Some(found) = &found
-                    {
-                        met_run(found.run);
-                    }
-                    if ANY && found.is_some() {
+                std::mem::swap(&mut next, &mut waiting);
+                if next != NONE && self.look::<L>(next, ray, ignored, &mut limit, &mut found) {
+                    if ANY {
                         return found;
+                    }
+                    if let Some(found) = &found {
+                        met_run(found.run);
                     }
                 }
             }
             loop {
                 if count == 0 {
+                    if waiting != NONE
+                        && self.look::<L>(waiting, ray, ignored, &mut limit, &mut found)
+                        && let Some(found) = &found
+                    {
+                        met_run(found.run);
+                    }
                     return found;
                 }
                 count -= 1;
@@ -260,6 +270,24 @@ impl Tree {
             0 => self.nodes.fetch(child as usize),
             _ => self.leaves.fetch((child & !(LEAF | PAIR)) as usize),
         }
+    }
+
+    /// Whether a segment of one or two leaves was met that is nearer than what was found before.
+    #[inline(always)]
+    fn look<L: Lanes>(
+        &self,
+        leaves: u32,
+        ray: &Line,
+        ignored: &Ignored,
+        limit: &mut f32,
+        found: &mut Option<Found>,
+    ) -> bool {
+        let first = leaves & !(LEAF | PAIR);
+        let mut nearer = self.meet::<L>(first, ray, ignored, limit, found);
+        if leaves & PAIR != 0 {
+            nearer |= self.meet::<L>(first + 1, ray, ignored, limit, found);
+        }
+        nearer
     }
 
     /// Whether a segment of a leaf was met that is nearer than what was found before.

@@ -3,7 +3,7 @@
 //! A node's runs are looked at along axes of its own: those of the scene, or such that one lies along
 //! the hair where that makes boxes smaller (Woop, Benthin, Wald, Johnson and Tabellion 2014). They are
 //! cut in two where that costs a ray least (surface area heuristic in bins, Wald 2007), the largest part
-//! first, until there are eight parts.
+//! first, until there are sixteen parts.
 
 use super::leaf::{Leaf, RUNS};
 use super::node::{CHILDREN, Child, Node};
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// Bins along an axis.
 const BINS: usize = 16;
 /// From this depth on runs are halved, so that no way is longer than [`DEPTH`].
-const EVEN: usize = DEPTH - 10;
+const EVEN: usize = DEPTH - 7;
 /// Runs from which on the parts are built on several threads.
 const MANY: usize = 2048;
 /// Leaves of a child at most.
@@ -380,7 +380,7 @@ fn cheapest(bins: &Bins) -> Option<(usize, usize)> {
 mod tests {
     use super::*;
 
-    /// Whatever the sizes of the boxes, eight parts of one size: else [`DEPTH`] is no bound.
+    /// Whatever the sizes of the boxes, parts of one size: else [`DEPTH`] is no bound.
     #[test]
     fn even_parts_have_one_size() {
         let count = 800;

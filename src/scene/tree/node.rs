@@ -1,10 +1,12 @@
-//! Eight boxes with axes of their own.
+//! Sixteen boxes with axes of their own.
 
 use super::lanes::Lanes;
 use glam::{Mat3, Vec3, Vec4};
 
 /// Children of a node at most.
-pub(super) const CHILDREN: usize = 8;
+pub(super) const CHILDREN: usize = 16;
+/// Of which so many are looked at together.
+const TOGETHER: usize = 8;
 
 /// A reference to leaves rather than to a node; two leaves one after the other.
 pub(super) const LEAF: u32 = 1 << 31;
@@ -18,22 +20,22 @@ pub(super) struct Line {
 }
 
 /// Boxes of children, whose edges lie along the fur in them where it is long in one direction. Planes are counted in
-/// steps from a corner, so that all is in two lines of a cache.
+/// steps from a corner, so that all is in three lines of a cache.
 #[derive(Clone, Debug)]
-#[repr(C, align(128))]
+#[repr(C, align(64))]
 pub(super) struct Node {
     /// Columns: from directions in the scene to steps along the axes of the boxes.
     turn: [Vec4; 3],
     /// Corner, in the scene.
     corner: Vec4,
     /// For each axis lower and upper planes.
-    planes: [[[u8; CHILDREN]; 2]; 3],
+    planes: [[[[u8; TOGETHER]; CHILDREN / TOGETHER]; 2]; 3],
     /// First inner child and first leaf; both kinds follow one another.
     first: [u32; 2],
     /// Which children there are, which of them are leaves, which of these are two, a bit each.
-    used: u8,
-    leaves: u8,
-    pairs: u8,
+    used: u16,
+    leaves: u16,
+    pairs: u16,
 }
 
 /// A child of a node that is to be.
@@ -47,7 +49,7 @@ pub(super) struct Child {
 }
 
 impl Node {
-    /// * `axes`: columns, a rotation. * `children`: at most 8. * `first`: of both kinds.
+    /// * `axes`: columns, a rotation. * `children`: at most 16. * `first`: of both kinds.
     pub(super) fn new(axes: &Mat3, children: &[Child], first: [u32; 2]) -> Self {
         let lo = children.iter().fold(Vec3::INFINITY, |a, c| a.min(c.lo));
         let hi = children.iter().fold(Vec3::NEG_INFINITY, |a, c| a.max(c.hi));
@@ -61,19 +63,19 @@ impl Node {
             turn: [local.x_axis, local.y_axis, local.z_axis].map(|column| column.extend(0.0)),
             corner: corner.extend(0.0),
             first,
-            planes: [[[u8::MAX; CHILDREN], [0; CHILDREN]]; 3],
-            used: ((1u32 << children.len()) - 1) as u8,
+            planes: [[u8::MAX, 0].map(|plane| [[plane; TOGETHER]; CHILDREN / TOGETHER]); 3],
+            used: ((1u32 << children.len()) - 1) as u16,
             leaves: 0,
             pairs: 0,
         };
         for (k, child) in children.iter().enumerate() {
-            node.leaves |= u8::from(child.leaves > 0) << k;
-            node.pairs |= u8::from(child.leaves == 2) << k;
+            node.leaves |= u16::from(child.leaves > 0) << k;
+            node.pairs |= u16::from(child.leaves == 2) << k;
             let (lo, hi) = (child.lo - room - lowest, child.hi + room - lowest);
             for axis in 0..3 {
                 let [low, high] = &mut node.planes[axis];
-                low[k] = (lo[axis] / step[axis]).floor() as u8;
-                high[k] = (hi[axis] / step[axis]).ceil() as u8;
+                low[k / TOGETHER][k % TOGETHER] = (lo[axis] / step[axis]).floor() as u8;
+                high[k / TOGETHER][k % TOGETHER] = (hi[axis] / step[axis]).ceil() as u8;
             }
         }
         node
@@ -94,7 +96,7 @@ impl Node {
 
     /// Which of the boxes a ray meets, a bit each, and where it enters each.
     #[inline(always)]
-    pub(super) fn meets<L: Lanes>(&self, ray: &Line, limit: f32) -> (u32, L::F) {
+    pub(super) fn meets<L: Lanes>(&self, ray: &Line, limit: f32) -> (u32, [L::F; 2]) {
         let from = self.corner - ray.origin.extend(0.0);
         let [x, y, z] = self.turn;
         let along = x * ray.dir.x + y * ray.dir.y + z * ray.dir.z;
@@ -109,26 +111,35 @@ impl Node {
         let (enter, leave) = (start - blur, start + blur);
         let down = inverse.is_negative_bitmask() as usize;
         let [x, y, z] = [0, 1, 2];
-        let x = self.slab::<L>(x, down, inverse[x], enter[x], leave[x]);
-        let y = self.slab::<L>(y, down, inverse[y], enter[y], leave[y]);
-        let z = self.slab::<L>(z, down, inverse[z], enter[z], leave[z]);
-        let begin = L::max(L::max(L::splat(0.0), x.0), L::max(y.0, z.0));
-        let end = L::min(L::min(L::splat(limit), x.1), L::min(y.1, z.1));
-        (L::le(begin, end) & u32::from(self.used), begin)
+        let (mut met, mut begins) = (0, [L::splat(0.0); CHILDREN / TOGETHER]);
+        for (part, begins) in begins.iter_mut().enumerate() {
+            let x = self.slab::<L>(x, part, down, inverse[x], [enter[x], leave[x]]);
+            let y = self.slab::<L>(y, part, down, inverse[y], [enter[y], leave[y]]);
+            let z = self.slab::<L>(z, part, down, inverse[z], [enter[z], leave[z]]);
+            let begin = L::max(L::max(L::splat(0.0), x.0), L::max(y.0, z.0));
+            let end = L::min(L::min(L::splat(limit), x.1), L::min(y.1, z.1));
+            met |= L::le(begin, end) << (part * TOGETHER);
+            *begins = begin;
+        }
+        (met & u32::from(self.used), begins)
     }
 
-    /// Where a ray enters what lies between two planes of each box, and leaves it.
+    /// Where a ray enters what lies between two planes of each box of a part, and where it leaves it.
     #[inline(always)]
     fn slab<L: Lanes>(
         &self,
         axis: usize,
+        part: usize,
         down: usize,
         step: f32,
-        enter: f32,
-        leave: f32,
+        [enter, leave]: [f32; 2],
     ) -> (L::F, L::F) {
         let near = down >> axis & 1;
-        let (near, far) = (&self.planes[axis][near], &self.planes[axis][near ^ 1]);
+        let [near, far] = [near, near ^ 1];
+        let (near, far) = (
+            &self.planes[axis][near][part],
+            &self.planes[axis][far][part],
+        );
         let step = L::splat(step);
         (
             L::mul_add(L::bytes(near), step, L::splat(enter)),
