@@ -3,6 +3,7 @@ use super::*;
 use crate::bsdf::HairMaterial;
 use crate::color::{Rgb, luminance};
 use crate::groom::Groom;
+use crate::progress::Silent;
 use crate::scene::{Backdrop, Environment, Hit, Lamp, LampChoice, LampShape, SceneParts, View};
 use crate::skin;
 use glam::Vec3;
@@ -179,4 +180,58 @@ fn the_floor_joins_the_backdrop_under_lamps() {
     let floor = film.pixels.iter().filter(|p| p.alpha == 0.0);
     let shadow = floor.map(|p| p.radiance.x).fold(1.0, f32::min);
     assert!(shadow < 0.36, "{shadow}");
+}
+
+/// Rays toward light are sent by chance. Where all but a few are left out the mean is still that of
+/// rays that are always sent.
+#[test]
+fn light_asked_for_by_chance_keeps_its_mean() {
+    let groom = ball(3_000, 12.0, 300.0);
+    let half_black = {
+        let lit = |i: usize| if i % 32 < 16 { Rgb::ONE } else { Rgb::ZERO };
+        Environment::from_texels(32, 16, (0..512).map(lit).collect())
+    };
+    let under = |environment: &Environment, lamps: &[Lamp]| {
+        Scene::build(SceneParts {
+            groom: &groom,
+            materials: vec![HairMaterial::Isotropic(Rgb::splat(0.8))],
+            skin: None,
+            environment: environment.clone(),
+            lamps,
+            backdrop: Backdrop::Plain(Rgb::ZERO),
+            ground: None,
+            view: View::default(),
+        })
+        .unwrap()
+    };
+    let scenes = [
+        ("studio", under(&Environment::studio(), &[])),
+        ("half black", under(&half_black, &[])),
+        ("lamps", under(&Environment::black(), &large_lamps())),
+    ];
+    for (name, s) in scenes {
+        let plain = render(&s, 16, 256, Sampler::Mis);
+        let job = RenderJob {
+            resolution: [16, 16],
+            spp: 256,
+            ..RenderJob::default()
+        };
+        let with = |factor: f32| {
+            let mut integrator = job.integrator(&s);
+            integrator.enough *= factor;
+            let mut rendering = Rendering::with(&job, integrator).unwrap();
+            rendering.run(None, &Silent, &Cancel::default());
+            rendering.film()
+        };
+        let (all, few) = (with(0.0), with(20.0));
+        let saved = 1.0 - few.report.rays as f64 / all.report.rays as f64;
+        assert!(saved > 0.1, "{name}: {saved}");
+        let (truth, truth_error) = mean_of(&plain);
+        for film in [&all, &with(1.0), &few] {
+            let (mean, error) = mean_of(film);
+            let z = (mean - truth) / error.hypot(truth_error);
+            assert!(z.abs() < 4.0, "{name}: {mean} against {truth}, z = {z}");
+            assert!(error < 0.02 * truth, "{name}: {error}");
+        }
+    }
 }

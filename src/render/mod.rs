@@ -17,6 +17,7 @@ pub use rendering::Rendering;
 pub use sums::{FilmSums, FilmSumsError};
 
 use crate::blame::Blame;
+use crate::color::luminance;
 use crate::progress::{Cancel, Progress};
 use crate::scene::Scene;
 use path::Integrator;
@@ -32,8 +33,9 @@ pub const SPP_LIMIT: u32 = 1 << 24;
 /// How directions are drawn. All converge to the same picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sampler {
-    /// Direct light by quasi-random sampling importance resampling of scattering times environment;
-    /// the path goes on by the scattering model, its escapes weighted in.
+    /// Direct light by quasi-random sampling importance resampling of scattering times environment: rays are
+    /// sent in proportion to what they would bring; the path goes on by the scattering model, its escapes
+    /// weighted in.
     #[default]
     Qsir,
     /// The paper's scheme: resampling draws the one ray that carries direct and indirect light.
@@ -191,6 +193,7 @@ impl RenderJob {
             seed: self.seed,
             sampler: self.sampler,
             filter: self.filter,
+            enough: path::ENOUGH * luminance(scene.mean_light()),
             #[cfg(test)]
             bare_target: false,
         }

@@ -2,10 +2,10 @@
 
 use super::draws::{Draws, Purpose};
 use super::mattes::Seen;
-use super::resample::{Plan, Target, resample};
+use super::resample::{Plan, Target, candidates, chance_of_asking, resample};
 use super::scatter::{Direction, Scatter};
 use super::{Filter, Sampler};
-use crate::color::Rgb;
+use crate::color::{Rgb, luminance};
 use crate::scene::{Camera, Ground, Hit, LampChoice, Scene};
 use glam::{Vec2, Vec3};
 
@@ -16,6 +16,10 @@ const ROULETTE_FROM: u32 = 2;
 /// Scattering events after which a path is cut whatever it carries. Lossless fur escapes long
 /// before: cut paths are counted and reported.
 const FAR_CAP: u32 = 1000;
+
+/// Light, as a share of what the place that the camera sees would send in even light, from which on a ray is
+/// always sent for it. At twice as much pale fur takes 8 % fewer rays and has 3 % more error.
+pub(super) const ENOUGH: f32 = 0.3;
 
 /// What the camera saw first.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,6 +50,20 @@ pub(super) struct Sample {
     pub(super) capped: bool,
 }
 
+/// A scattering point of a path.
+struct Vertex<'a> {
+    scatter: &'a Scatter<'a>,
+    draws: &'a Draws,
+    /// Scattering events before this one.
+    depth: u32,
+    /// Share of what leaves here that reaches the eye.
+    throughput: Rgb,
+    /// Luminance at the eye from which on a ray is always sent for it.
+    enough: f32,
+    /// Whether it is the first, on the floor.
+    on_floor: bool,
+}
+
 /// Traces paths of one picture.
 pub(super) struct Integrator<'a> {
     pub(super) scene: &'a Scene,
@@ -54,6 +72,8 @@ pub(super) struct Integrator<'a> {
     pub(super) seed: u64,
     pub(super) sampler: Sampler,
     pub(super) filter: Filter,
+    /// [`ENOUGH`] times the luminance of even light.
+    pub(super) enough: f32,
     /// Replaces the target of resampling, for the test of its bias.
     #[cfg(test)]
     pub(super) bare_target: bool,
@@ -133,18 +153,26 @@ impl Integrator<'_> {
         let environment = &self.scene.environment;
         let mut sum = Rgb::ZERO;
         let mut throughput = Rgb::ONE;
+        let enough = self.enough * luminance(first.albedo());
         let mut next;
         let mut scatter = first;
         for depth in 0..FAR_CAP {
-            sum += throughput
-                * match floor {
-                    Some(floor) if depth == 0 => self.floor_light(floor, scatter, draws, out),
-                    _ => self.direct(scatter, draws, depth, out),
-                };
             let on_floor = floor.is_some() && depth == 0;
+            let at = Vertex {
+                scatter,
+                draws,
+                depth,
+                throughput,
+                enough,
+                on_floor,
+            };
+            sum += match floor {
+                Some(floor) if on_floor => self.floor_light(floor, &at, out),
+                _ => self.direct(&at, out),
+            };
             let lamps = self.lamps_from(scatter);
             if let Some(lamps) = &lamps {
-                sum += throughput * self.lamp_light(lamps, scatter, draws, depth, on_floor, out);
+                sum += self.lamp_light(lamps, &at, out);
             }
             let Some(direction) = self.continue_from(scatter, draws, depth) else {
                 return sum;
@@ -188,8 +216,7 @@ impl Integrator<'_> {
         {
             let environment = &self.scene.environment;
             let target = self.target(depth);
-            let kept = resample(scatter, environment, &plan, &target, draws, depth);
-            return kept.map(|(direction, _)| direction);
+            return resample(scatter, environment, plan, &target, draws, depth);
         }
         let u = draws.point(depth, Purpose::Continue);
         scatter.sample([u[0], u[1], u[2]])
@@ -203,17 +230,24 @@ impl Integrator<'_> {
         Target::all(self.scene.mean_light(), depth)
     }
 
-    /// Light straight from the environment.
-    fn direct(&self, scatter: &Scatter<'_>, draws: &Draws, depth: u32, out: &mut Sample) -> Rgb {
+    /// Light straight from the environment, at the eye.
+    fn direct(&self, at: &Vertex<'_>, out: &mut Sample) -> Rgb {
+        let Vertex {
+            scatter,
+            draws,
+            depth,
+            ..
+        } = *at;
         let environment = &self.scene.environment;
-        let (dir, weight) = match self.sampler {
-            Sampler::Bsdf | Sampler::QsirOneRay => return Rgb::ZERO,
+        match self.sampler {
+            Sampler::Bsdf | Sampler::QsirOneRay => Rgb::ZERO,
             Sampler::Qsir => {
-                let plan = Plan::direct(depth);
-                match resample(scatter, environment, &plan, &Target::DIRECT, draws, depth) {
-                    Some((kept, light)) => (kept.dir, kept.weight * light),
-                    None => return Rgb::ZERO,
+                let mut sum = Rgb::ZERO;
+                for c in candidates(scatter, environment, Plan::direct(depth), draws, depth) {
+                    let light = at.throughput * c.density * c.light * c.weight;
+                    sum += self.ask_by_chance(at, c.dir, f32::INFINITY, light, c.chance, out);
                 }
+                sum
             }
             Sampler::Env | Sampler::Mis => {
                 let u = draws.point(depth, Purpose::Light);
@@ -225,10 +259,10 @@ impl Integrator<'_> {
                     Sampler::Mis => power(light.pdf, scatter_pdf),
                     _ => 1.0,
                 };
-                (light.dir, density * light.radiance * (share / light.pdf))
+                let weight = at.throughput * density * light.radiance * (share / light.pdf);
+                self.unless_occluded(scatter, light.dir, f32::INFINITY, weight, out)
             }
-        };
-        self.unless_occluded(scatter, dir, f32::INFINITY, weight, out)
+        }
     }
 
     /// The lamps from a scattering point; `None` if there are none.
@@ -237,24 +271,19 @@ impl Integrator<'_> {
         (!lamps.is_empty()).then(|| LampChoice::new(lamps, scatter.position()))
     }
 
-    /// Light straight from a lamp.
-    fn lamp_light(
-        &self,
-        lamps: &LampChoice<'_>,
-        scatter: &Scatter<'_>,
-        draws: &Draws,
-        depth: u32,
-        on_floor: bool,
-        out: &mut Sample,
-    ) -> Rgb {
-        let u = draws.point(depth, Purpose::Lamp);
+    /// Light straight from a lamp, at the eye.
+    fn lamp_light(&self, lamps: &LampChoice<'_>, at: &Vertex<'_>, out: &mut Sample) -> Rgb {
+        let u = at.draws.point(at.depth, Purpose::Lamp);
         let Some(lamp) = lamps.sample([u[0], u[1], u[2]]) else {
             return Rgb::ZERO;
         };
-        let (density, scatter_pdf) = scatter.eval(lamp.dir);
-        let [share, _] = self.lamp_shares(on_floor, lamp.pdf, scatter_pdf);
-        let light = density * lamp.radiance * (share / lamp.pdf);
-        self.unless_occluded(scatter, lamp.dir, lamp.distance, light, out)
+        let (density, scatter_pdf) = at.scatter.eval(lamp.dir);
+        let [share, _] = self.lamp_shares(at.on_floor, lamp.pdf, scatter_pdf);
+        let light = at.throughput * density * lamp.radiance * (share / lamp.pdf);
+        match self.sampler {
+            Sampler::Qsir => self.ask_by_chance(at, lamp.dir, lamp.distance, light, u[3], out),
+            _ => self.unless_occluded(at.scatter, lamp.dir, lamp.distance, light, out),
+        }
     }
 
     /// How much of the light of lamps the rays that are sent to them bring, and how much of it the continuing
@@ -272,17 +301,30 @@ impl Integrator<'_> {
 
     /// Light straight from the environment to white paint on the floor, which has no other noise
     /// than that of visibility.
-    fn floor_light(
+    fn floor_light(&self, floor: &Ground, at: &Vertex<'_>, out: &mut Sample) -> Rgb {
+        let u = at.draws.point(0, Purpose::Light);
+        match floor.sample(&self.scene.environment, [u[0], u[1]]) {
+            Some((dir, light)) => self.unless_occluded(at.scatter, dir, f32::INFINITY, light, out),
+            None => Rgb::ZERO,
+        }
+    }
+
+    /// As [`Self::unless_occluded`] on the average, but most rays that would bring little are not sent.
+    fn ask_by_chance(
         &self,
-        floor: &Ground,
-        scatter: &Scatter<'_>,
-        draws: &Draws,
+        at: &Vertex<'_>,
+        dir: Vec3,
+        far: f32,
+        light: Rgb,
+        chance: f32,
         out: &mut Sample,
     ) -> Rgb {
-        let u = draws.point(0, Purpose::Light);
-        match floor.sample(&self.scene.environment, [u[0], u[1]]) {
-            Some((dir, light)) => self.unless_occluded(scatter, dir, f32::INFINITY, light, out),
-            None => Rgb::ZERO,
+        let sent = chance_of_asking(light, at.enough);
+        // Also drops NaN.
+        if chance < sent {
+            self.unless_occluded(at.scatter, dir, far, light / sent, out)
+        } else {
+            Rgb::ZERO
         }
     }
 

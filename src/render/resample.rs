@@ -1,27 +1,29 @@
-//! Quasi-random sampling importance resampling: one direction drawn nearly by the product of
+//! Quasi-random sampling importance resampling: directions drawn nearly by the product of
 //! scattering and light.                                                 [Talbot05, Perez05]
 //!
 //! Half of M candidates comes from the scattering model, half from the environment. Each gets the
-//! weight of the balance heuristic times a target, one is kept by chance in proportion, and
+//! weight of the balance heuristic, `m(x) = 1 / sum_k n_k p_k(x)`. Two uses:
+//!
+//! * Light straight from the environment: every candidate brings `m F` if nothing is in front of it, F
+//!   scattering times environment, and is asked with a probability in proportion to that
+//!   ([`chance_of_asking`]). Rays go where the light would come from, and all that are left to chance bring as much.
+//!   The ray that continues the path counts as one more technique, so that its escapes are not wasted.
+//! * One ray for everything, as in the paper: one candidate is kept by chance in proportion to m times a
+//!   target p^,
 //!
 //! ```text
-//! m(x) = 1 / sum_k n_k p_k(x)      w_j = m(x_j) p^(x_j)      W = sum_j w_j / p^(Y)
+//! w_j = m(x_j) p^(x_j)      W = sum_j w_j / p^(Y)
 //! ```
 //!
-//! makes `F(Y) W` an unbiased estimate of the integral of F wherever the target is positive where F
-//! is. Two uses:
-//!
-//! * Light straight from the environment: F is scattering times environment, and so is the target.
-//!   The ray that continues the path counts as one more technique, so that its escapes are not
-//!   wasted.
-//! * One ray for everything, as in the paper: the ray also carries what other strands send, so the
-//!   target must not vanish where the environment is dark. The bare product never sends a ray there
-//!   and loses that light.
+//!   and `F(Y) W` is an unbiased estimate of the integral of F wherever the target is positive where F
+//!   is. The ray also carries what other strands send, so the target must not vanish where the environment
+//!   is dark. The bare product never sends a ray there and loses that light.
 
 use super::draws::{Draws, Purpose};
 use super::scatter::{Direction, Scatter};
 use crate::color::{Rgb, luminance};
 use crate::scene::Environment;
+use glam::Vec3;
 
 /// Scattering that rays which hit other strands are expected to meet there.
 const TYPICAL_ALBEDO: f32 = 0.5;
@@ -39,10 +41,8 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// Candidates for direct light at a scattering depth, beside a continuing ray. Four at the
-    /// eye: eight lower the noise by less than they cost; deeper, occlusion rules the variance and
-    /// two do as well. The continuing ray counts
-    /// as much as all of them: at a tenth of that the noise in even light grows by half.
+    /// Candidates for direct light at a scattering depth, beside a continuing ray. Four at the eye, two deeper:
+    /// twice as many lower the noise by less than they cost, most of all where a shading model is dear.
     pub(super) fn direct(depth: u32) -> Self {
         let half = match depth {
             0 => 2,
@@ -51,7 +51,7 @@ impl Plan {
         Self {
             scattering: half,
             lights: half,
-            continuing: 2.0 * half as f32,
+            continuing: 1.0,
         }
     }
 
@@ -93,7 +93,8 @@ pub(super) struct Target {
 }
 
 impl Target {
-    /// Only the environment: right for direct light, biased for a ray that carries all light.
+    /// Only the environment: biased for a ray that carries all light.
+    #[cfg(test)]
     pub(super) const DIRECT: Self = Self {
         escape: 1.0,
         indirect: 0.0,
@@ -116,41 +117,83 @@ impl Target {
     }
 }
 
-/// Draws one direction; its weight is scattering density times W. Beside it the environment's light from
-/// there.
-pub(super) fn resample(
+/// A direction that may be taken.
+pub(super) struct Candidate {
+    /// Unit, world.
+    pub(super) dir: Vec3,
+    /// Scattered share per steradian.
+    pub(super) density: Rgb,
+    /// The environment's radiance from there.
+    pub(super) light: Rgb,
+    /// Weight of the balance heuristic, steradians.
+    pub(super) weight: f32,
+    /// A number in `[0, 1)` that belongs to it and is not used yet.
+    pub(super) chance: f32,
+}
+
+/// The candidates of a plan at one scattering point.
+pub(super) fn candidates(
     scatter: &Scatter<'_>,
     environment: &Environment,
-    plan: &Plan,
-    target: &Target,
+    plan: Plan,
     draws: &Draws,
     bounce: u32,
-) -> Option<(Direction, Rgb)> {
+) -> impl Iterator<Item = Candidate> {
     let scattering = draws.net(bounce, Purpose::Scatter);
     let lights = draws.net(bounce, Purpose::Light);
-    let mut choice = draws.point(bounce, Purpose::Choice)[0];
-    let (mut sum, mut kept) = (0.0f32, None);
-    for j in 0..plan.scattering + plan.lights {
+    (0..plan.scattering + plan.lights).filter_map(move |j| {
         // Each kind is an aligned run of its own net.
         // What the sampling of one side knows already is not looked up again.
-        let candidate = if j < plan.scattering {
+        if j < plan.scattering {
             let u = scattering.point(draws.run(plan.scattering) + j);
-            scatter.sample([u[0], u[1], u[2]]).map(|s| {
-                let (light, light_pdf) = environment.eval(s.dir);
-                (s.dir, s.weight * s.pdf, s.pdf, light, light_pdf)
+            let s = scatter.sample([u[0], u[1], u[2]])?;
+            let (light, light_pdf) = environment.eval(s.dir);
+            Some(Candidate {
+                dir: s.dir,
+                density: s.weight * s.pdf,
+                light,
+                weight: 1.0 / plan.density(s.pdf, light_pdf),
+                chance: u[3],
             })
         } else {
             let u = lights.point(draws.run(plan.lights) + j - plan.scattering);
-            environment.sample([u[0], u[1]]).map(|s| {
-                let (density, scatter_pdf) = scatter.eval(s.dir);
-                (s.dir, density, scatter_pdf, s.radiance, s.pdf)
+            let s = environment.sample([u[0], u[1]])?;
+            let (density, scatter_pdf) = scatter.eval(s.dir);
+            Some(Candidate {
+                dir: s.dir,
+                density,
+                light: s.radiance,
+                weight: 1.0 / plan.density(scatter_pdf, s.pdf),
+                chance: u[2],
             })
-        };
-        let Some((dir, density, scatter_pdf, light, light_pdf)) = candidate else {
-            continue;
-        };
-        let value = target.value(luminance(density), luminance(light));
-        let weight = value / plan.density(scatter_pdf, light_pdf);
+        }
+    })
+}
+
+/// The probability with which a ray that would bring `light` is sent; what it brings is divided by it.
+///
+/// Most light is blocked in fur, so the noise of a ray is about what it would bring. Noise is least for a number
+/// of rays that are sent in proportion to that.
+///
+/// * `enough`: luminance from which on it is always sent.
+pub(super) fn chance_of_asking(light: Rgb, enough: f32) -> f32 {
+    (luminance(light) / enough).min(1.0)
+}
+
+/// Draws one direction; its weight is scattering density times W.
+pub(super) fn resample(
+    scatter: &Scatter<'_>,
+    environment: &Environment,
+    plan: Plan,
+    target: &Target,
+    draws: &Draws,
+    bounce: u32,
+) -> Option<Direction> {
+    let mut choice = draws.point(bounce, Purpose::Choice)[0];
+    let (mut sum, mut kept) = (0.0f32, None);
+    for candidate in candidates(scatter, environment, plan, draws, bounce) {
+        let value = target.value(luminance(candidate.density), luminance(candidate.light));
+        let weight = value * candidate.weight;
         // Also drops NaN.
         if !(weight > 0.0 && weight.is_finite()) {
             continue;
@@ -160,16 +203,15 @@ pub(super) fn resample(
         let share = weight / sum;
         if choice < share {
             choice /= share;
-            kept = Some((dir, density, value, light));
+            kept = Some((candidate, value));
         } else {
             choice = (choice - share) / (1.0 - share);
         }
     }
-    let (dir, density, value, light) = kept?;
-    let direction = Direction {
-        dir,
-        weight: density * (sum / value),
+    let (candidate, value) = kept?;
+    Some(Direction {
+        dir: candidate.dir,
+        weight: candidate.density * (sum / value),
         pdf: value / sum,
-    };
-    Some((direction, light))
+    })
 }
