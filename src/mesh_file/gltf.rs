@@ -1,6 +1,6 @@
 //! glTF 2.0, text (.gltf) and binary (.glb): triangles of the meshes in the scene, placed by the
 //! transforms of their nodes. Parts are named by node, else by mesh. Buffers may be in the file or
-//! beside it. Materials, skins and animations are passed over.
+//! beside it. Texture coordinates are the first set. Materials, skins and animations are passed over.
 //!
 //! Members and formulas: Khronos Group, glTF 2.0 Specification, sections 3 (concepts) and 4 (GLB).
 
@@ -10,7 +10,7 @@ mod document;
 use super::{MAX_COUNT, MAX_PARTS, MeshFileError, RawMesh};
 use buffers::Buffers;
 use document::{Document, Node, Primitive};
-use glam::{Mat4, Quat, Vec3};
+use glam::{Mat4, Quat, Vec2, Vec3};
 
 /// Deepest tree of nodes; also what ends a tree that bites its tail.
 const MAX_DEPTH: usize = 64;
@@ -35,8 +35,12 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
         buffers,
         mesh: RawMesh::default(),
         visited: 0,
+        lacks_uv: false,
     };
     reader.scene()?;
+    if reader.lacks_uv {
+        reader.mesh.uvs.clear();
+    }
     Ok(reader.mesh)
 }
 
@@ -46,6 +50,8 @@ struct Reader<'a> {
     buffers: Buffers<'a>,
     mesh: RawMesh,
     visited: usize,
+    /// Whether a mesh has no texture coordinates.
+    lacks_uv: bool,
 }
 
 impl Reader<'_> {
@@ -177,6 +183,22 @@ impl Reader<'_> {
             let reason = format!("vertex {i} is ({}, {}, {}): not finite", p.x, p.y, p.z);
             return Err(named(reason));
         }
+        match primitive.attributes.get("TEXCOORD_0") {
+            None => self.lacks_uv = true,
+            Some(&accessor) => {
+                let uvs = self.buffers.coordinates(accessor).map_err(named)?;
+                if uvs.len() != corners.len() || !uvs.iter().all(|uv| uv.is_finite()) {
+                    let (found, wanted) = (uvs.len(), corners.len());
+                    let reason = format!(
+                        "has {found} texture coordinates for {wanted} vertices, or some that are not finite"
+                    );
+                    return Err(named(reason));
+                }
+                // Elsewhere pictures begin at their lower left corner.
+                let uvs = uvs.iter().map(|uv| Vec2::new(uv.x, 1.0 - uv.y));
+                self.mesh.uvs.extend(uvs);
+            }
+        }
         let base = self.mesh.positions.len() as u32;
         let placed = corners.iter().map(|&p| transform.transform_point3(p));
         self.mesh.positions.extend(placed);
@@ -212,4 +234,64 @@ fn local_transform(node: &Node) -> Mat4 {
     };
     let translation = node.translation.map_or(Vec3::ZERO, Vec3::from);
     Mat4::from_scale_rotation_translation(scale, rotation, translation)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A triangle with texture coordinates of one kind, as bytes in hexadecimal.
+    fn triangle(component: u32, uvs: &[u8]) -> Result<RawMesh, MeshFileError> {
+        let floats = [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let bytes: Vec<u8> = floats.iter().flat_map(|x| x.to_le_bytes()).collect();
+        let bytes = [&bytes, uvs].concat();
+        let text = format!(
+            r#"{{"asset": {{"version": "2.0"}}, "nodes": [{{"mesh": 0}}],
+            "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "TEXCOORD_0": 1}}}}]}}],
+            "accessors": [
+                {{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}},
+                {{"bufferView": 1, "componentType": {component}, "normalized": true, "count": 3, "type": "VEC2"}}],
+            "bufferViews": [{{"buffer": 0, "byteLength": 36}},
+                {{"buffer": 0, "byteOffset": 36, "byteLength": {}}}],
+            "buffers": [{{"byteLength": {}}}]}}"#,
+            uvs.len(),
+            bytes.len(),
+        );
+        let pad = |bytes: &[u8]| [bytes, &b"   "[..bytes.len().wrapping_neg() % 4]].concat();
+        let chunk = |kind: &[u8; 4], bytes: &[u8]| {
+            [&(bytes.len() as u32).to_le_bytes()[..], kind, bytes].concat()
+        };
+        let chunks = [
+            chunk(b"JSON", &pad(text.as_bytes())),
+            chunk(b"BIN\0", &pad(&bytes)),
+        ]
+        .concat();
+        let length = 12 + chunks.len() as u32;
+        let header = [*b"glTF", 2u32.to_le_bytes(), length.to_le_bytes()].concat();
+        read("a.glb", &[header, chunks].concat())
+    }
+
+    /// They go down in glTF and up in all other files.
+    #[test]
+    fn texture_coordinates_are_read_and_turned_up() {
+        let floats = [0f32, 0.25, 1.0, 0.0, 0.5, 1.0];
+        let floats: Vec<u8> = floats.iter().flat_map(|x| x.to_le_bytes()).collect();
+        let expected = [
+            Vec2::new(0.0, 0.75),
+            Vec2::new(1.0, 1.0),
+            Vec2::new(0.5, 0.0),
+        ];
+        assert_eq!(triangle(5126, &floats).unwrap().uvs, expected);
+        let bytes = triangle(5121, &[0, 51, 255, 0, 102, 255]).unwrap().uvs;
+        assert!(
+            bytes[0].distance(Vec2::new(0.0, 0.8)) < 1e-6 && bytes[2].y == 0.0,
+            "{bytes:?}"
+        );
+        let shorts = triangle(5123, &[0, 0, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0])
+            .unwrap()
+            .uvs;
+        assert_eq!(shorts[..2], [Vec2::ZERO, Vec2::Y]);
+        let error = triangle(5125, &floats).unwrap_err().to_string();
+        assert!(error.contains("component type 5125"), "{error}");
+    }
 }

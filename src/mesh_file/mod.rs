@@ -10,9 +10,8 @@ mod gltf;
 mod loaded;
 mod obj;
 mod ply;
+mod polygon;
 mod raw;
-#[cfg(test)]
-mod tests;
 mod usd;
 
 pub use error::MeshFileError;

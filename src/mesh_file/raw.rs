@@ -1,6 +1,6 @@
 //! A mesh as its file says it.
 
-use super::MeshFileError;
+use super::{MeshFileError, polygon};
 use glam::{Vec2, Vec3};
 
 /// Largest coordinate, in the file's units. Areas and volumes of larger ones overflow.
@@ -67,11 +67,13 @@ impl Places {
 }
 
 impl RawMesh {
-    /// Cuts a polygon of part `part` into a fan.
+    /// Cuts a polygon of part `part` into triangles. Its vertices are there already.
     pub(crate) fn add_polygon(&mut self, corners: &[u32], part: u32) {
-        for i in 2..corners.len() {
-            self.triangles
-                .push([corners[0], corners[i - 1], corners[i]]);
+        // Corners that are nowhere are refused when the mesh is checked.
+        let place = |&v: &u32| self.positions.get(v as usize).copied().unwrap_or(Vec3::NAN);
+        let places: Vec<Vec3> = corners.iter().map(place).collect();
+        for triangle in polygon::triangles(&places) {
+            self.triangles.push(triangle.map(|i| corners[i]));
             self.face.push(self.faces as u32);
             self.part.push(part);
         }

@@ -3,7 +3,7 @@
 use super::document::{Accessor, Document};
 use crate::io::read_bounded;
 use crate::mesh_file::{MAX_FILE, MeshFileError};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::borrow::Cow;
 use std::path::{Component, Path};
 
@@ -116,6 +116,28 @@ impl<'a> Buffers<'a> {
         let float = |at: usize| word(view, at).map_or(0.0, f32::from_bits);
         Ok((0..a.count as usize)
             .map(|i| Vec3::from([0, 4, 8].map(|k| float(i * stride + k))))
+            .collect())
+    }
+
+    /// Texture coordinates, from the upper left corner of a picture: pairs of floats, or of whole numbers of
+    /// which the largest means 1.
+    pub(super) fn coordinates(&self, accessor: usize) -> Result<Vec<Vec2>, String> {
+        let (size, scale) = match self.accessor(accessor)?.component_type {
+            UNSIGNED_BYTE => (1, 1.0 / 255.0),
+            UNSIGNED_SHORT => (2, 1.0 / 65535.0),
+            _ => (4, 1.0),
+        };
+        let fits = |a: &Accessor| a.component_type == FLOAT || size < 4;
+        let (a, view, stride) = self.view(accessor, "VEC2", 2 * size, fits)?;
+        let number = |at: usize| match size {
+            4 => word(view, at).map_or(0.0, f32::from_bits),
+            _ => {
+                let bytes = view[at..at + size].iter().rev();
+                bytes.fold(0, |n, b| n << 8 | u32::from(*b)) as f32 * scale
+            }
+        };
+        Ok((0..a.count as usize)
+            .map(|i| Vec2::new(number(i * stride), number(i * stride + size)))
             .collect())
     }
 

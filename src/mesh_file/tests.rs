@@ -1,1 +1,0 @@
-//! Files good and bad.
