@@ -170,6 +170,76 @@ fn skins_in_centimeters_are_exported() {
     }
 }
 
+/// Files of USD say their units and axis, in which places on the skin are then given too.
+#[test]
+fn whorls_lie_where_the_skin_s_file_has_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let square = "#usda 1.0\n(\n    metersPerUnit = 0.01\n    upAxis = \"Z\"\n)\ndef Mesh \"square\"\n{\n\
+                  uniform token subdivisionScheme = \"none\"\nint[] faceVertexCounts = [4]\n\
+                  int[] faceVertexIndices = [0, 1, 2, 3]\n\
+                  point3f[] points = [(0, 30, 5), (40, 30, 5), (40, 60, 5), (0, 60, 5)]\n}\n";
+    fs::write(folder.path().join("square.usda"), square).unwrap();
+    let whorl = |center: &str| {
+        let set = format!("groom.comb.whorl=[{{center=[{center}],radius_mm=40}}]");
+        // The file's own word counts, however often it is repeated.
+        let arguments = ["--skin", "square.usda", "--skin-up", "z", "--set", &set];
+        let output = export(
+            folder.path(),
+            &[&arguments[..], &["--strands", "200", "-o", "a.npz"]].concat(),
+        );
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(!whorl("10, 40, 5").contains("from the skin"));
+    assert!(whorl("0.1, 0.05, -0.4").contains("from the skin"));
+}
+
+#[test]
+fn files_that_would_be_written_over_each_other_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for arguments in [
+        &["-o", "x.usdc", "-o", "./x.usdc"][..],
+        &[
+            "-o",
+            "a.usda",
+            "-o",
+            "a.payload.usdc",
+            "--layout",
+            "payload",
+        ],
+        &["-o", "a.usdc", "-o", "a.vdb", "--wrap", "a.usdc"],
+        &[
+            "-o",
+            "a.usda",
+            "-o",
+            "a.vdb",
+            "--wrap",
+            "a.payload.usdc",
+            "--layout",
+            "payload",
+        ],
+    ] {
+        let output = export(folder.path(), &[&["--strands", "100"], arguments].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(said.contains("would be written twice"), "{said}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}
+
+/// Whatever units an asset has that the same command writes.
+#[test]
+fn gltf_is_in_meters_with_y_up() {
+    let folder = tempfile::tempdir().unwrap();
+    let written = |name: &str, arguments: &[&str]| {
+        let output = [&["--strands", "200", "-o", name], arguments].concat();
+        assert!(export(folder.path(), &output).status.success());
+        fs::read(folder.path().join(name)).unwrap()
+    };
+    let turned = written("turned.glb", &["--units", "cm", "--up", "z"]);
+    assert_eq!(turned, written("plain.glb", &[]));
+}
+
 #[test]
 fn a_payload_goes_beside_the_interface() {
     let folder = tempfile::tempdir().unwrap();

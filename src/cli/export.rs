@@ -153,6 +153,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         }
         check_writable(output)?;
     }
+    check_apart(args)?;
     let skin = args.on.load()?;
     for warning in &skin.warnings {
         console.say(format!("warning: {warning}"));
@@ -253,6 +254,31 @@ fn looks(args: &Args, species: &Species, console: &Console) -> Result<Vec<ClassL
         ));
     }
     Ok(looks)
+}
+
+/// Refuses a command of which one file would take the place of another.
+fn check_apart(args: &Args) -> Result<(), Failure> {
+    let mut files: Vec<PathBuf> = args.output.clone();
+    files.extend(args.volume.wrap.clone());
+    if matches!(args.layout, LayoutArg::Payload) {
+        for output in &args.output {
+            if let Format::Usd(_) = Format::of(output)? {
+                files.push(asset::payload_of(output));
+            }
+        }
+    }
+    let mut places = std::collections::HashSet::new();
+    for file in files {
+        if !places.insert(std::path::absolute(&file).unwrap_or_else(|_| file.clone())) {
+            let message = format!(
+                "{} would be written twice, one over the other",
+                file.display()
+            );
+            let help = "give each -o, --wrap and payload (NAME.payload.usdc) a name of its own";
+            return Err(Failure::with_help(Blame::Input, message, help));
+        }
+    }
+    Ok(())
 }
 
 /// Whether any output is an asset, not only grids and plain strands.

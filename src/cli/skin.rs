@@ -10,10 +10,10 @@ pub(super) struct SkinArgs {
     /// not given.
     #[arg(long)]
     skin: Option<String>,
-    /// What a unit of the skin's file is; m if not given. USD files say it themselves, and which axis is up.
+    /// What a unit of the skin's file is; m if not given. USD files say it themselves; this comes on top.
     #[arg(long, value_enum)]
     skin_units: Option<UnitArg>,
-    /// Which axis of the skin's file points up; y if not given.
+    /// Which axis of the skin's file points up; y if not given. What a USD file says counts.
     #[arg(long, value_enum)]
     skin_up: Option<UpArg>,
 }

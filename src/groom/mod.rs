@@ -311,7 +311,8 @@ pub fn grow(
         account.cut = cut.into_inner();
         account.buried = groom.remove_buried(first, start, per_strand, &mut ranks);
         let name = &groom.classes[class];
-        let said = [account.missing(name), account.collided(name)];
+        let stretched = strand::stretched(&species.classes[class].groom, name);
+        let said = [account.missing(name), account.collided(name), stretched];
         groom.warnings.extend(said.into_iter().flatten());
         groom
             .warnings

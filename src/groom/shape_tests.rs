@@ -139,10 +139,22 @@ fn frizz_wanders_as_far_as_it_says() {
 
 #[test]
 fn curls_turn_at_their_radius() {
-    let curled = swatch(|g| {
-        g.curl_mm = 0.5;
-        g.curl_pitch_mm = 8.0;
-    });
+    for pitch in [8.0, 1.0] {
+        let curled = swatch(|g| {
+            g.curl_mm = 0.5;
+            g.curl_pitch_mm = pitch;
+        });
+        assert_radius(&curled, 0.5e-3);
+        // Eleven pieces of 12 mm have a turn in three.
+        let is_said = curled
+            .warnings
+            .iter()
+            .any(|w| w.contains("turn once in 3.3 mm and not in 1 mm"));
+        assert_eq!(is_said, pitch == 1.0, "{:?}", curled.warnings);
+    }
+}
+
+fn assert_radius(curled: &Groom, expected: f32) {
     let straight = swatch(|g| g.curl_mm = 1e-9);
     let mut sum = 0.0;
     for i in 0..curled.strands() {
@@ -152,7 +164,24 @@ fn curls_turn_at_their_radius() {
     }
     let radius = sum / curled.strands() as f32;
     // Hair that would curl into the skin is lifted: a little less or more.
-    assert!((radius / 0.5e-3 - 1.0).abs() < 0.15, "{radius} m");
+    assert!((radius / expected - 1.0).abs() < 0.15, "{radius} m");
+}
+
+/// Clumps far wider than hair is long gather it and do not draw it out.
+#[test]
+fn clumps_do_not_stretch_hair() {
+    let gathered = swatch(|g| {
+        g.clump = 1.0;
+        g.clump_mm = 100.0;
+    });
+    let loose = swatch(|_| {});
+    let longer = gathered
+        .length
+        .iter()
+        .zip(&loose.length)
+        .map(|(a, b)| a / b);
+    let most = longer.fold(0.0, f32::max);
+    assert!((1.02..1.6).contains(&most), "{most}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::field::Field;
 use super::follicle::Root;
 use super::here::{Here, Profile, size};
 use super::vary::{Variation, Varied};
-use super::waves::{Crimp, Curl, Frizz};
+use super::waves::{Crimp, Curl, Frizz, POINTS_PER_WAVE};
 use crate::sampling::{Rng, hash64};
 use crate::skin::Skin;
 use crate::species::{ClassGroom, VaryWhat};
@@ -42,6 +42,8 @@ const DRIFT_LENGTH: f32 = 0.08;
 /// clump's pull: the tufts that a coat shows from afar.
 const LOCK: f32 = 7.0;
 const LOCK_PULL: f32 = 0.7;
+/// The farthest that a hair is pulled, of its length. More stretches hair that is short for its clump.
+const FARTHEST: f32 = 0.5;
 /// How far the hairs of a tuft lean together, radians, and differ in length from the next tuft.
 const TUFT_LEAN: f32 = 0.14;
 const TUFT_LENGTH: f32 = 0.07;
@@ -62,6 +64,19 @@ pub(super) fn points_of(class: &ClassGroom) -> usize {
     } else {
         POINTS
     }
+}
+
+/// What is to be said of curls that turn too often for the points of a strand.
+pub(super) fn stretched(class: &ClassGroom, name: &str) -> Option<String> {
+    let points = points_of(class);
+    let least = f64::from(POINTS_PER_WAVE) * class.length_mm / (points - 1) as f64;
+    let asked = class.curl_pitch_mm;
+    (class.curl_mm > 0.0 && asked < least).then(|| {
+        format!(
+            "curls of `{name}` turn once in {least:.1} mm and not in {asked} mm as asked: a strand has {points} \
+             points, three a turn"
+        )
+    })
 }
 
 /// Grows strands of one class.
@@ -217,6 +232,10 @@ impl<'a> Grower<'a> {
         // Wet hair sticks to its neighbors, not to a whole lock.
         let share = share * (1.0 - here.wet);
         let lock_pull = (LOCK_PULL * share * (1.0 + 0.4 * lock.random[3])).clamp(0.0, 1.0);
+
+        let way = pull * to_clump.length() + lock_pull * to_lock.length();
+        let ease = (FARTHEST * whole / way.max(f32::MIN_POSITIVE)).min(1.0);
+        let (pull, lock_pull) = (ease * pull, ease * lock_pull);
 
         let (mut hair, mut center) = (root.position, root.position);
         let step = length / (self.points() - 1) as f32;

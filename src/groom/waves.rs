@@ -7,7 +7,7 @@ use glam::Vec3;
 use std::f32::consts::TAU;
 
 /// Control points that carry one wave of crimp. Fewer and it vanishes between the points.
-const POINTS_PER_WAVE: f32 = 3.0;
+pub(super) const POINTS_PER_WAVE: f32 = 3.0;
 /// Largest crimp amplitude relative to length.
 const CRIMP_LIMIT: f32 = 0.06;
 /// Waves of frizz along a hair.
@@ -58,10 +58,10 @@ pub(super) struct Curl {
 impl Curl {
     /// * `phase`: -1..1, of the clump.
     pub(super) fn new(here: &Here, step: f32, phase: f32) -> Self {
-        // As for the crimp: stretched along and across where points are too few.
+        // Stretched where points are too few, but no wider: it would leave the coat.
         let pitch = here.pitch.max(POINTS_PER_WAVE * step);
         Self {
-            radius: here.curl * (pitch / here.pitch),
+            radius: here.curl,
             wavenumber: TAU / pitch,
             phase: phase * 0.5 * TAU,
         }

@@ -16,7 +16,7 @@ mod usd;
 
 pub use error::MeshFileError;
 pub use loaded::LoadedMesh;
-pub(crate) use raw::{Places, RawMesh};
+pub(crate) use raw::{Places, RawMesh, Said};
 
 use crate::io::read_bounded;
 use std::path::Path;

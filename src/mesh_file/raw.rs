@@ -27,8 +27,19 @@ pub(crate) struct RawMesh {
     pub(crate) names: Vec<String>,
     /// What of the file could not be read, a sentence each.
     pub(crate) remarks: Vec<String>,
+    /// Of files that say it, how their numbers became these.
+    pub(crate) said: Option<Said>,
     /// How places in the file are named.
     pub(crate) places: Places,
+}
+
+/// What a file says of its numbers, which are read as meters with Y up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Said {
+    /// Meters in a unit.
+    pub(crate) unit_m: f64,
+    /// Whether Z points up and not Y; `None` where it is not said.
+    pub(crate) is_z_up: Option<bool>,
 }
 
 /// Names for the vertices and faces of a file, for messages.

@@ -9,11 +9,24 @@ mod primvar;
 mod stage;
 mod surface;
 
-use super::{MAX_COUNT, MAX_PARTS, MeshFileError, RawMesh};
-use crate::usd_file::{Prim, Specifier, Value, placed, to_meters};
+use super::{MAX_COUNT, MAX_PARTS, MeshFileError, RawMesh, Said};
+use crate::usd_file::{Prim, Specifier, Value, meters_per_unit, placed, to_meters};
 use glam::{DMat4, Vec2, Vec3};
 use polygons::Polygons;
 use std::collections::HashMap;
+
+/// Surfaces that are no meshes.
+const SHAPES: [&str; 9] = [
+    "Capsule",
+    "Capsule_1",
+    "Cone",
+    "Cube",
+    "Cylinder",
+    "Cylinder_1",
+    "NurbsPatch",
+    "Plane",
+    "Sphere",
+];
 
 /// Reads the bytes of a file. `file` is its path: for messages, and to find what lies beside it.
 pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
@@ -29,7 +42,6 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
         mesh: RawMesh::default(),
         lacks_uv: false,
         has_normals: false,
-        inherits: false,
         remarks: Vec::new(),
     };
     for prim in &stage.roots {
@@ -39,12 +51,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
     if mesh.faces == 0 {
         let mut reasons = vec!["there is no Mesh with faces in it".to_owned()];
         reasons.extend(stage.remarks);
-        if reader.inherits {
-            reasons.push(format!(
-                "what prims inherit or specialize is not read: {}",
-                stage::REMEDY
-            ));
-        }
+        reasons.extend(reader.remarks);
         return Err(invalid("as USD".to_owned(), reasons.join("; ")));
     }
     if reader.lacks_uv {
@@ -53,6 +60,10 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
     if !reader.has_normals {
         mesh.normals.clear();
     }
+    mesh.said = Some(Said {
+        unit_m: meters_per_unit(&stage.layer),
+        is_z_up: (stage.layer.field("upAxis").and_then(Value::text)).map(|axis| axis == "Z"),
+    });
     mesh.remarks = stage.remarks;
     mesh.remarks.extend(reader.remarks);
     Ok(mesh)
@@ -63,9 +74,7 @@ struct Reader<'a> {
     mesh: RawMesh,
     lacks_uv: bool,
     has_normals: bool,
-    /// Whether a prim takes something from another in a way that is not followed.
-    inherits: bool,
-    /// What meshes are taken otherwise than they are meant, a sentence each.
+    /// What is not taken, or otherwise than it is meant, a sentence each.
     remarks: Vec<String>,
 }
 
@@ -81,9 +90,28 @@ impl Reader<'_> {
         {
             return Ok(());
         }
-        let arcs = ["inherits", "inheritPaths", "specializes"];
-        self.inherits |= arcs.iter().any(|arc| prim.field(arc).is_some());
         let path = format!("{above}/{}", prim.name);
+        let arcs = ["inherits", "inheritPaths", "specializes"];
+        if arcs.iter().any(|arc| prim.field(arc).is_some()) {
+            let remark = format!(
+                "what {path} inherits or specializes is not read: {}",
+                stage::REMEDY
+            );
+            self.remarks.push(remark);
+        }
+        match prim.type_name.as_str() {
+            // What it multiplies is below it, and shown nowhere else.
+            "PointInstancer" => {
+                self.remarks.push(format!("{path} is a PointInstancer, of which nothing is read: turn its instances into meshes"));
+                return Ok(());
+            }
+            kind if SHAPES.contains(&kind) => {
+                self.remarks.push(format!(
+                    "{path} is a {kind} and not read: turn it into a mesh"
+                ));
+            }
+            _ => {}
+        }
         let placed = placed(prim, outer).map_err(|reason| self.invalid(&path, reason))?;
         if prim.type_name == "Mesh" {
             self.add(prim, &path, placed)?;
@@ -293,6 +321,25 @@ def Xform "a"
             );
             let error = read("a.usda", text.as_bytes()).unwrap_err().to_string();
             assert!(error.contains("there is no Mesh with faces"), "{error}");
+        }
+    }
+
+    #[test]
+    fn what_is_shown_but_not_read_is_named() {
+        let shapes = format!(
+            "{STRIP}\ndef Sphere \"ball\"\n{{\n}}\ndef \"other\" (\n    inherits = </a>\n)\n{{\n}}\n\
+             def PointInstancer \"many\"\n{{\n    def Mesh \"one\"\n    {{\n    }}\n}}\n"
+        );
+        let mesh = read("a.usda", shapes.as_bytes()).unwrap();
+        assert_eq!(mesh.faces, 2);
+        let named = [
+            "/ball is a Sphere",
+            "what /other inherits",
+            "/many is a PointInstancer",
+        ];
+        assert_eq!(mesh.remarks.len(), named.len(), "{:?}", mesh.remarks);
+        for (remark, name) in mesh.remarks.iter().zip(named) {
+            assert!(remark.starts_with(name), "{remark}");
         }
     }
 

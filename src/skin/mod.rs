@@ -146,6 +146,15 @@ fn load_file(name: &str, placing: Placing) -> Result<Skin, SkinError> {
     } else {
         mesh_file::read(path)?
     };
+    // What a file says of its axes counts, and is done.
+    let said = mesh.said;
+    let placing = match said.and_then(|said| said.is_z_up) {
+        Some(_) => Placing {
+            up: Up::Y,
+            ..placing
+        },
+        None => placing,
+    };
     for p in &mut mesh.positions {
         *p = placing.place(*p);
     }
@@ -153,7 +162,14 @@ fn load_file(name: &str, placing: Placing) -> Result<Skin, SkinError> {
         *n = placing.turn(*n);
     }
     let mut skin = mesh.into_skin(name)?;
-    skin.placing = placing;
+    // From the numbers of the file, those in which places on the skin are given.
+    skin.placing = Placing {
+        unit_m: placing.unit_m * said.map_or(1.0, |said| said.unit_m as f32),
+        up: match said.and_then(|said| said.is_z_up) {
+            Some(true) => Up::Z,
+            _ => placing.up,
+        },
+    };
     Ok(skin)
 }
 

@@ -3,12 +3,16 @@
 use super::{Layer, Prim, Value};
 use glam::{DMat4, DQuat, DVec3};
 
-/// From the units of a layer to meters with Y up.
-pub(crate) fn to_meters(layer: &Layer) -> DMat4 {
+/// Meters in a unit of a layer.
+pub(crate) fn meters_per_unit(layer: &Layer) -> f64 {
     // What Pixar's library takes where a layer says nothing.
     let meters = layer.field("metersPerUnit").and_then(Value::number);
-    let meters = meters.filter(|m| *m > 0.0 && m.is_finite()).unwrap_or(0.01);
-    let mut root = DMat4::from_scale(DVec3::splat(meters));
+    meters.filter(|m| *m > 0.0 && m.is_finite()).unwrap_or(0.01)
+}
+
+/// From the units of a layer to meters with Y up.
+pub(crate) fn to_meters(layer: &Layer) -> DMat4 {
+    let mut root = DMat4::from_scale(DVec3::splat(meters_per_unit(layer)));
     if layer.field("upAxis").and_then(Value::text) == Some("Z") {
         root *= DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2);
     }

@@ -15,6 +15,12 @@ pub(super) fn run(
     console: &Console,
 ) -> Result<(), Failure> {
     let groom = parts.groom;
+    // Those of glTF are always meters, with Y up.
+    let frame = if format == LineFormat::Glb {
+        Frame::default()
+    } else {
+        frame
+    };
     asset::check(groom)?;
     let set = LineSet {
         points: groom.points.iter().map(|p| frame.point(*p)).collect(),

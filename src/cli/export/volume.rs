@@ -42,7 +42,7 @@ pub(super) struct VolumeArgs {
     grid_memory: u64,
     /// Also write a USD layer that shows the grids as a Volume: .usda, .usdc or .usd.
     #[arg(long, value_name = "FILE")]
-    wrap: Option<PathBuf>,
+    pub(super) wrap: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -238,10 +238,37 @@ fn write_wrap(
 
 /// The path of `to` as a layer at `from` names it.
 fn relative(to: &Path, from: &Path) -> String {
-    let name = to.file_name().unwrap_or_default().to_string_lossy();
-    if to.parent() == from.parent() {
-        return format!("./{name}");
+    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let (to, from) = (absolute(to), absolute(from));
+    let (to, from): (Vec<_>, Vec<_>) = (to.components().collect(), from.components().collect());
+    let shared = to.iter().zip(&from).take_while(|(a, b)| a == b).count();
+    let up = from.len().saturating_sub(shared + 1);
+    let steps = std::iter::repeat_n("..".to_owned(), up);
+    let down = to[shared..]
+        .iter()
+        .map(|step| step.as_os_str().to_string_lossy().into_owned());
+    let path: Vec<String> = steps.chain(down).collect();
+    match up {
+        0 => format!("./{}", path.join("/")),
+        _ => path.join("/"),
     }
-    let absolute = std::path::absolute(to).unwrap_or_else(|_| to.to_owned());
-    absolute.to_string_lossy().replace('\\', "/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layers_name_grids_from_where_they_are() {
+        for (to, from, expected) in [
+            ("a.vdb", "b.usda", "./a.vdb"),
+            ("./a.vdb", "b.usda", "./a.vdb"),
+            ("sub/a.vdb", "b.usda", "./sub/a.vdb"),
+            ("a.vdb", "layers/deep/b.usda", "../../a.vdb"),
+            ("grids/a.vdb", "layers/b.usda", "../grids/a.vdb"),
+            ("/x/a.vdb", "/x/y/b.usda", "../a.vdb"),
+        ] {
+            assert_eq!(relative(Path::new(to), Path::new(from)), expected);
+        }
+    }
 }

@@ -35,7 +35,7 @@ pub use profile::{Column, Profile, READERS, Reader};
 pub use provenance::identifier;
 pub use tree::{interface, layer};
 pub use wardrobe::Wear;
-pub use write::{TEXT_FACTOR, estimate, write};
+pub use write::{TEXT_FACTOR, estimate, payload_of, write};
 
 use super::ExportError;
 use crate::groom::Groom;

@@ -7,7 +7,7 @@ use crate::io::{AtomicFile, FileError};
 use crate::progress::{Cancel, Progress};
 use crate::skin::Skin;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How many times as large text is as the binary form.
 pub const TEXT_FACTOR: u64 = 4;
@@ -75,12 +75,17 @@ pub fn write(
         return job.write(path, &tree::layer(parts, settings, &name), form, size);
     }
     // The payload first: what refers to it must not be there without it.
-    let payload = path.with_extension("payload.usdc");
+    let payload = payload_of(path);
     let payload_name = payload.file_name().unwrap_or_default().to_string_lossy();
     let layer = tree::layer(parts, settings, &payload_name);
     job.write(&payload, &layer, Form::Binary, size)?;
     let interface = tree::interface(parts, settings, &name, &payload_name);
     job.write(path, &interface, form, 10_000)
+}
+
+/// Where the payload of an interface goes.
+pub fn payload_of(interface: &Path) -> PathBuf {
+    interface.with_extension("payload.usdc")
 }
 
 struct Job<'j> {

@@ -177,7 +177,7 @@ def Mesh "square"
         let text = "#usda 1.0\nclass Mesh \"c\" {\n}\ndef \"a\" (\n inherits = </c>\n)\n{\n}\n";
         let error = of(&within, text).unwrap_err().to_string();
         assert!(
-            error.contains("inherit or specialize is not read: one file"),
+            error.contains("what /a inherits or specializes is not read: one file"),
             "{error}"
         );
     }
