@@ -182,13 +182,22 @@ fn whorls_lie_where_the_skin_s_file_has_them() {
     let whorl = |center: &str| {
         let set = format!("groom.comb.whorl=[{{center=[{center}],radius_mm=40}}]");
         // The file's own word counts, however often it is repeated.
-        let arguments = ["--skin", "square.usda", "--skin-up", "z", "--set", &set];
-        let output = export(
-            folder.path(),
-            &[&arguments[..], &["--strands", "200", "-o", "a.npz"]].concat(),
-        );
-        assert!(output.status.success());
-        String::from_utf8(output.stderr).unwrap()
+        let output = Command::new(env!("CARGO_BIN_EXE_vair"))
+            .current_dir(folder.path())
+            .args([
+                "export",
+                "red-fox",
+                "--skin",
+                "square.usda",
+                "--skin-up",
+                "z",
+            ])
+            .args(["--set", &set, "--strands", "200", "-o", "a.npz"])
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{said}");
+        said
     };
     assert!(!whorl("10, 40, 5").contains("from the skin"));
     assert!(whorl("0.1, 0.05, -0.4").contains("from the skin"));

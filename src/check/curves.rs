@@ -211,6 +211,15 @@ impl<'s> Curves<'s> {
                 let remedy = "write a point beyond each end for it (vair export --curves phantom)";
                 add(of_pinned, &[RenderMan], "wrap", message, remedy);
             }
+            (true, "catmullRom", "periodic") => {
+                let message = "hair is drawn as closed rings";
+                add(Warning, DRAWING, "wrap", message, "write pinned");
+            }
+            (true, "catmullRom", _) => {
+                let message = "Blender, Cycles and Unreal draw the points beyond both ends too: hair is longer there";
+                let remedy = "write pinned, unless the file is for RenderMan up to 25 only";
+                add(Warning, &[Blender, Cycles, Unreal], "wrap", message, remedy);
+            }
             (true, "bezier", _) => {
                 let message =
                     "Cycles and Unreal ignore the basis: handles become points of the strand";

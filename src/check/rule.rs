@@ -133,7 +133,7 @@ pub const RULES: [Described; 20] = [
         "type, basis and wrap that readers draw alike",
         "Cubic, catmullRom, pinned is drawn through all its points by Blender, Cycles and Storm. RenderMan \
          up to 25 takes pinned for nonperiodic and loses both end pieces: for it write a point beyond each \
-         end (`vair export --curves phantom`). Points of B-splines are off the curve, so readers that \
+         end (`vair export --curves phantom`), which Blender, Cycles and Unreal draw as hair. Points of B-splines are off the curve, so readers that \
          ignore the basis (Unreal, Cycles) draw another shape; the handles of Bezier curves become points \
          of the strand there.",
         "Blender 4.5 to 5.2 and Storm measured; source of RenderMan's Hydra delegate; OpenUSD issue 2445",

@@ -215,6 +215,9 @@ fn c08_groom_api() {
 #[test]
 fn c09_kinds_of_curves() {
     planted(Rule::C09, Warning, "\"catmullRom\"", "\"bspline\"");
+    // Points beyond the ends are hair to most readers, and rings are hair to none.
+    planted(Rule::C09, Warning, "\"pinned\"", "\"nonperiodic\"");
+    planted(Rule::C09, Warning, "\"pinned\"", "\"periodic\"");
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("fur.usda");
     fs::write(&file, FUR).unwrap();

@@ -113,7 +113,7 @@ impl Column {
             Self::CurveId => &[Blender, Houdini, Arnold, RenderMan, Omniverse],
             Self::DisplayColor => &[Storm, Omniverse, Houdini, Blender],
             Self::Melanin => &[Blender],
-            Self::Absorption => &[Houdini, Arnold, RenderMan, Omniverse, Storm],
+            Self::Absorption => &[Houdini, Arnold, RenderMan, Omniverse, Storm, Blender],
         }
     }
 }
