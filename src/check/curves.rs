@@ -215,7 +215,8 @@ impl<'s> Curves<'s> {
                 let message = "hair is drawn as closed rings";
                 add(Warning, DRAWING, "wrap", message, "write pinned");
             }
-            (true, "catmullRom", _) => {
+            // With fewer points they are no curves at all.
+            (true, "catmullRom", _) if self.counts.iter().all(|n| *n >= 4) => {
                 let message = "Blender, Cycles and Unreal draw the points beyond both ends too: hair is longer there";
                 let remedy = "write pinned, unless the file is for RenderMan up to 25 only";
                 add(Warning, &[Blender, Cycles, Unreal], "wrap", message, remedy);

@@ -216,8 +216,10 @@ fn c08_groom_api() {
 fn c09_kinds_of_curves() {
     planted(Rule::C09, Warning, "\"catmullRom\"", "\"bspline\"");
     // Points beyond the ends are hair to most readers, and rings are hair to none.
-    planted(Rule::C09, Warning, "\"pinned\"", "\"nonperiodic\"");
     planted(Rule::C09, Warning, "\"pinned\"", "\"periodic\"");
+    let phantom = edited("\"pinned\"", "\"nonperiodic\"").replacen("[3, 3, 3]", "[9]", 1);
+    let is_longer = |f: &Finding| f.rule == Rule::C09 && f.message.contains("beyond both ends");
+    assert!(found(&phantom, &[]).iter().any(is_longer));
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("fur.usda");
     fs::write(&file, FUR).unwrap();
