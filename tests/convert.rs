@@ -55,7 +55,9 @@ fn a_sound_file_becomes_every_format() {
         .map(|i| 0.001 * i as f32 + 0.0003 * (i % 7) as f32)
         .collect();
     let file = hair(2, 10, 2, 4, &floats(&points));
-    for name in ["x.npz", "x.ply", "x.glb", "x.pbrt", "x.vdb", "x.hair"] {
+    for name in [
+        "x.npz", "x.ply", "x.glb", "x.pbrt", "x.txt", "x.vdb", "x.hair",
+    ] {
         let (code, said) = convert(folder.path(), &file, name);
         assert_eq!(code, Some(0), "{name}: {said}");
         assert!(fs::metadata(folder.path().join(name)).unwrap().len() > 100);

@@ -28,7 +28,7 @@ pub(super) struct Args {
     /// Diameter of all strands instead of the file's, micrometers of a meter after scaling.
     #[arg(long, value_name = "UM")]
     width_um: Option<f32>,
-    /// Where the strands go: .hair, .npz, .ply, .glb, .pbrt, or .vdb for grids. May repeat.
+    /// Where the strands go: .hair, .npz, .ply, .glb, .pbrt, .txt for Mitsuba, or .vdb for grids. May repeat.
     #[arg(long, short, required = true)]
     output: Vec<PathBuf>,
 }
@@ -87,7 +87,7 @@ fn target(path: &Path) -> Result<Format, Failure> {
             ExportError::Suffix {
                 path: path.to_owned(),
             },
-            "end the name in .hair, .npz, .ply, .glb, .pbrt or .vdb",
+            "end the name in .hair, .npz, .ply, .glb, .pbrt, .txt or .vdb",
         )),
     }
 }

@@ -120,7 +120,7 @@ pub(super) struct Args {
     #[command(flatten)]
     volume: volume::VolumeArgs,
     /// Where the fur goes: .usdc, .usd or .usda; a mesh in its place for viewers on phones: .usdz; grids of it: .vdb; plain strands: .hair, .npz, .ply,
-    /// .glb, .pbrt. May repeat.
+    /// .glb, .pbrt, .txt for Mitsuba. May repeat.
     #[arg(long, short, required = true)]
     output: Vec<PathBuf>,
 }

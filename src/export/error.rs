@@ -55,7 +55,7 @@ impl ExportError {
     pub fn remedy(&self) -> Option<&'static str> {
         match self {
             Self::Suffix { .. } => Some(
-                "end the name in .usdc, .usd, .usda, .usdz, .vdb, .hair, .npz, .ply, .glb or .pbrt",
+                "end the name in .usdc, .usd, .usda, .usdz, .vdb, .hair, .npz, .ply, .glb, .pbrt or .txt",
             ),
             Self::UsdzUp { .. } => Some("write it without --up z"),
             Self::Empty => Some("ask for more --strands"),

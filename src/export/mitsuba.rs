@@ -189,7 +189,7 @@ fn write_with(
 
 /// Control points of the uniform cubic B-spline through all points whose ends run along the first and
 /// last chords, as Vair's own splines do: two more than points.
-fn interpolating_b_spline(points: &[Vec4]) -> Vec<Vec4> {
+pub(super) fn interpolating_b_spline(points: &[Vec4]) -> Vec<Vec4> {
     let n = points.len();
     if n < 2 {
         return Vec::new();

@@ -27,7 +27,7 @@ pub enum Format {
     Usdz,
     /// `.vdb`: grids of density, color and others.
     Vdb,
-    /// Plain strands: `.hair`, `.npz`, `.ply`, `.glb`, `.pbrt`.
+    /// Plain strands: `.hair`, `.npz`, `.ply`, `.glb`, `.pbrt`, `.txt`.
     Lines(lines::LineFormat),
 }
 

@@ -7,10 +7,12 @@
 //! | `.ply` | a vertex a control point, with the number of its strand |
 //! | `.glb` | glTF lines with colors, without widths: glTF has no curves |
 //! | `.pbrt` | cubic curves of pbrt, each span one |
+//! | `.txt` | B-splines of Mitsuba |
 
 mod error;
 mod glb;
 pub(crate) mod hair;
+mod mitsuba;
 mod npz;
 mod pbrt;
 mod ply;
@@ -92,6 +94,8 @@ pub enum LineFormat {
     Glb,
     /// `.pbrt`.
     Pbrt,
+    /// `.txt`.
+    Mitsuba,
 }
 
 impl LineFormat {
@@ -103,6 +107,7 @@ impl LineFormat {
             "ply" => Some(Self::Ply),
             "glb" => Some(Self::Glb),
             "pbrt" => Some(Self::Pbrt),
+            "txt" => Some(Self::Mitsuba),
             _ => None,
         }
     }
@@ -152,6 +157,7 @@ fn write_to(out: &mut impl Write, format: LineFormat, lines: &Lines<'_>) -> Resu
         LineFormat::Ply => ply::write(out, lines),
         LineFormat::Glb => glb::write(out, lines),
         LineFormat::Pbrt => pbrt::write(out, lines),
+        LineFormat::Mitsuba => mitsuba::write(out, lines),
     }
 }
 

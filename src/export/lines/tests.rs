@@ -101,6 +101,15 @@ fn formats_hold_what_they_can() {
     let text = String::from_utf8(bytes(LineFormat::Pbrt, &set)).unwrap();
     let spans = set.points.len() - 50;
     assert_eq!(text.matches("Shape \"curve\"").count(), spans);
+    // Two more points than a strand has, and an empty line after it.
+    let text = String::from_utf8(bytes(LineFormat::Mitsuba, &set)).unwrap();
+    let strands: Vec<usize> = text
+        .trim_end()
+        .split("\n\n")
+        .map(|s| s.lines().count())
+        .collect();
+    let points = set.offsets.windows(2).map(|o| (o[1] - o[0]) as usize + 2);
+    assert_eq!(strands, points.collect::<Vec<_>>());
     let glb = bytes(LineFormat::Glb, &set);
     assert_eq!(
         u32::from_le_bytes(glb[8..12].try_into().unwrap()) as usize,
