@@ -7,8 +7,8 @@
 
 use super::BsdfSample;
 use crate::color::Rgb;
-use crate::math::fresnel;
 use crate::math::quick::{exp, turns};
+use crate::math::{bessel, fresnel};
 use glam::{Vec3, Vec4};
 use std::f32::consts::{FRAC_PI_8, PI, TAU};
 
@@ -102,30 +102,11 @@ impl Longitudinal {
 /// * `product`: of the cosines of both inclinations. * `along`: cosine of the angle between them less 1.
 ///
 /// The exponential of the lobe and that of the Bessel function, neither of which overflows, are one.
-/// `exp(-x) I0(x)` is from Abramowitz and Stegun 9.8.1 and 9.8.2.
 #[inline(always)]
 fn longitudinal(sharpness: Vec4, norm: Vec4, product: Vec4, along: Vec4) -> Vec4 {
-    const NEAR: [f32; 7] = [
-        1.0,
-        3.515_623,
-        3.089_942_4,
-        1.206_749_2,
-        0.265_973_2,
-        0.036_076_8,
-        0.004_581_3,
-    ];
-    const FAR: [f32; 9] = [
-        0.398_942_3,
-        0.013_285_92,
-        0.002_253_19,
-        -0.001_575_65,
-        0.009_162_81,
-        -0.020_577_06,
-        0.026_355_37,
-        -0.016_476_33,
-        0.003_923_77,
-    ];
-    const EDGE: f32 = 3.75;
+    const NEAR: [f32; 7] = bessel::single(bessel::NEAR);
+    const FAR: [f32; 9] = bessel::single(bessel::FAR);
+    const EDGE: f32 = bessel::EDGE as f32;
     let horner = |coefficients: &[f32], t: Vec4| {
         let zero = Vec4::ZERO;
         coefficients.iter().rfold(zero, |sum, &c| sum * t + c)

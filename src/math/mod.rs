@@ -1,5 +1,6 @@
-//! Maps of cells, frames, turns, triangles, splines, exponentials, what is quick in single precision, steps, unit vectors in 32 bits, the unicube map and Fresnel equations.
+//! Maps of cells, frames, turns, triangles, splines, exponentials, a Bessel function, what is quick in single precision, steps, unit vectors in 32 bits, the unicube map and Fresnel equations.
 
+pub(crate) mod bessel;
 pub(crate) mod cells;
 pub mod decay;
 pub mod ease;

@@ -1,6 +1,7 @@
 //! The parts from which hair shaders are made: longitudinal and azimuthal lobes, means over the width.
 
 use super::data::COLUMNS;
+use crate::math::bessel;
 use std::f64::consts::{FRAC_PI_8, LN_2, PI, TAU};
 
 /// Offsets over half the width at which a fiber is entered. The narrowest azimuthal lobe in use is as
@@ -30,35 +31,14 @@ pub(super) fn longitudinal(theta_i: f64, theta_q: f64, v: f64) -> f64 {
     }
 }
 
-/// Logarithm of the modified Bessel function I0 (Abramowitz and Stegun 9.8.1 and 9.8.2).
+/// Logarithm of the modified Bessel function I0.
 fn log_bessel(x: f64) -> f64 {
     let horner =
         |coefficients: &[f64], t: f64| coefficients.iter().rev().fold(0.0, |s, c| s * t + c);
-    if x < 3.75 {
-        let t = (x / 3.75).powi(2);
-        let c = [
-            1.0,
-            3.515_622_9,
-            3.089_942_4,
-            1.206_749_2,
-            0.265_973_2,
-            0.036_076_8,
-            0.004_581_3,
-        ];
-        horner(&c, t).ln()
+    if x < bessel::EDGE {
+        horner(&bessel::NEAR, (x / bessel::EDGE).powi(2)).ln()
     } else {
-        let c = [
-            0.398_942_28,
-            0.013_285_92,
-            0.002_253_19,
-            -0.001_575_65,
-            0.009_162_81,
-            -0.020_577_06,
-            0.026_355_37,
-            -0.016_476_33,
-            0.003_923_77,
-        ];
-        x + horner(&c, 3.75 / x).ln() - 0.5 * x.ln()
+        x + horner(&bessel::FAR, bessel::EDGE / x).ln() - 0.5 * x.ln()
     }
 }
 
