@@ -4,7 +4,7 @@ use super::consumer::{Consumer, DRAWING};
 use super::finding::{Findings, Place, Severity};
 use super::rule::Rule;
 use super::stage::{Item, floats, ints, points};
-use crate::usd_file::{Property, Value};
+use crate::usd_file::Property;
 use Consumer::{Arnold, Blender, Cycles, Houdini, RenderMan, Storm, Unreal};
 use Severity::{Error, Note, Warning};
 use std::collections::BTreeMap;
@@ -33,9 +33,7 @@ impl<'s> Curves<'s> {
         if prim.type_name != "BasisCurves" {
             return None;
         }
-        let word = |name: &str, otherwise: &'static str| {
-            prim.value(name).and_then(Value::text).unwrap_or(otherwise)
-        };
+        let word = |name: &str, otherwise: &'static str| prim.text(name).unwrap_or(otherwise);
         Some(Self {
             item,
             counts: ints(prim.value("curveVertexCounts")).unwrap_or_default(),

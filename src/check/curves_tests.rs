@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::check::finding::{Finding, Severity};
-use crate::usd_file::{Prim, Property};
+use crate::usd_file::{Prim, Property, Value};
 
 /// What is found of so many prims, of the same group or each of its own, that have the same strands.
 fn found(prims: i64, counts: &[i64], points: &[f32], is_one_group: bool) -> Vec<Finding> {

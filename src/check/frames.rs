@@ -80,7 +80,7 @@ pub(super) fn regions(
         .iter()
         .filter(|i| i.prim.type_name == "OpenVDBAsset" && !i.is_moved)
     {
-        let name = asset.prim.value("fieldName").and_then(Value::text);
+        let name = asset.prim.text("fieldName");
         if let (Some(Value::Asset(file)), Some(name)) = (asset.prim.value("filePath"), name)
             && let Ok(facts) = grids.open(file)
             && let Some(grid) = facts.grids.iter().find(|g| g.name == name)

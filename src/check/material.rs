@@ -4,7 +4,6 @@ use super::consumer::{Consumer, DRAWING};
 use super::finding::{Findings, Place, Severity};
 use super::rule::Rule;
 use super::stage::{Item, binding};
-use crate::usd_file::Value;
 use Consumer::{Arnold, Houdini, RenderMan, Validators};
 use Severity::{Error, Note, Warning};
 use std::collections::HashMap;
@@ -62,7 +61,7 @@ pub(super) fn check(items: &[Item<'_>], findings: &mut Findings<'_>) {
             let remedy = "bind one, or choose it in the program that opens the file";
             findings.add((Rule::C12, Note), DRAWING, place(""), message, remedy);
         }
-        let id = item.prim.value("info:id").and_then(Value::text);
+        let id = item.prim.text("info:id");
         if let Some(id) = id.filter(|id| HELPERS.iter().any(|helper| id.starts_with(helper))) {
             let message =
                 format!("{id} is a stub in MaterialX's OSL: it gives 0 or 1 whatever goes in");

@@ -33,7 +33,7 @@ fn visit<'s>(prim: &'s Prim, above: Option<usize>, items: &mut Vec<Item<'s>>) {
     }
     let above = above.map(|parent| &items[parent]);
     let path = above.map_or("", |a| a.path.as_str());
-    let purpose = prim.value("purpose").and_then(Value::text);
+    let purpose = prim.text("purpose");
     let moves = matches!(prim.value("xformOpOrder"), Some(Value::Texts(ops)) if !ops.is_empty());
     let item = Item {
         path: format!("{path}/{}", prim.name),

@@ -9,7 +9,7 @@ use super::groom::{self, Ids};
 use super::rule::Rule;
 use super::stage::{Item, items};
 use super::{CheckSettings, attributes, extent, layer, material, package, suffix, volume};
-use crate::usd_file::{Files, Layer, Prim, Value, compose};
+use crate::usd_file::{Files, Layer, Prim, Value, compose, is_z_up};
 use std::collections::VecDeque;
 use std::path::Path;
 
@@ -40,7 +40,7 @@ pub(super) fn check(
     let stage = Stage {
         file: &path.to_string_lossy(),
         meters: meters.filter(|m| *m > 0.0),
-        is_z_up: layer.field("upAxis").and_then(Value::text) == Some("Z"),
+        is_z_up: is_z_up(layer) == Some(true),
         grids: Grids::new(is_package),
     };
     let open = |path: &Path| beside::layer(path, is_package);

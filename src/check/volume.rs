@@ -224,7 +224,7 @@ fn check_field(asset: &Item<'_>, grids: &Grids, findings: &mut Findings<'_>) {
         };
         findings.add((rule, severity), DRAWING, place, message, remedy);
     };
-    let word = |name| asset.prim.value(name).and_then(Value::text);
+    let word = |name| asset.prim.text(name);
     let Some(Value::Asset(file)) = asset.prim.value("filePath") else {
         let message = "there is no filePath: nothing is shown".to_owned();
         add(

@@ -63,10 +63,7 @@ impl MitsubaScene<'_> {
             let points: Vec<Vec4> = (groom.range(strand))
                 .map(|i| groom.points[i].extend(0.5 * groom.widths[i]) * UNITS)
                 .collect();
-            for p in interpolating_b_spline(&points) {
-                writeln!(out, "{} {} {} {}", p.x, p.y, p.z, p.w.max(0.0))?;
-            }
-            writeln!(out)?;
+            write_strand(out, &points)?;
         }
         Ok(())
     }
@@ -187,9 +184,19 @@ fn write_with(
         .commit()
 }
 
+/// Writes a strand for a `bsplinecurve`: a control point and its radius a line, an empty line at the end.
+///
+/// * `points`: with their radii.
+pub(super) fn write_strand(out: &mut (impl Write + ?Sized), points: &[Vec4]) -> io::Result<()> {
+    for p in interpolating_b_spline(points) {
+        writeln!(out, "{} {} {} {}", p.x, p.y, p.z, p.w.max(0.0))?;
+    }
+    writeln!(out)
+}
+
 /// Control points of the uniform cubic B-spline through all points whose ends run along the first and
 /// last chords, as Vair's own splines do: two more than points.
-pub(super) fn interpolating_b_spline(points: &[Vec4]) -> Vec<Vec4> {
+fn interpolating_b_spline(points: &[Vec4]) -> Vec<Vec4> {
     let n = points.len();
     if n < 2 {
         return Vec::new();

@@ -8,25 +8,14 @@ mod polygons;
 mod primvar;
 mod stage;
 mod surface;
+mod unread;
 
 use super::{MAX_COUNT, MAX_PARTS, MeshFileError, RawMesh, Said};
-use crate::usd_file::{Prim, Specifier, Value, meters_per_unit, placed, to_meters};
+use crate::usd_file::{Prim, Specifier, Value, is_z_up, meters_per_unit, placed, to_meters};
 use glam::{DMat4, Vec2, Vec3};
 use polygons::Polygons;
 use std::collections::HashMap;
-
-/// Surfaces that are no meshes.
-const SHAPES: [&str; 9] = [
-    "Capsule",
-    "Capsule_1",
-    "Cone",
-    "Cube",
-    "Cylinder",
-    "Cylinder_1",
-    "NurbsPatch",
-    "Plane",
-    "Sphere",
-];
+use unread::{Reason, Unread};
 
 /// Reads the bytes of a file. `file` is its path: for messages, and to find what lies beside it.
 pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
@@ -43,10 +32,12 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
         lacks_uv: false,
         has_normals: false,
         remarks: Vec::new(),
+        unread: Unread::default(),
     };
     for prim in &stage.roots {
         reader.visit(prim, "", to_meters(&stage.layer))?;
     }
+    reader.remarks.extend(reader.unread.remarks());
     let mut mesh = reader.mesh;
     if mesh.faces == 0 {
         let mut reasons = vec!["there is no Mesh with faces in it".to_owned()];
@@ -62,7 +53,7 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<RawMesh, MeshFileError> {
     }
     mesh.said = Some(Said {
         unit_m: meters_per_unit(&stage.layer),
-        is_z_up: (stage.layer.field("upAxis").and_then(Value::text)).map(|axis| axis == "Z"),
+        is_z_up: is_z_up(&stage.layer),
     });
     mesh.remarks = stage.remarks;
     mesh.remarks.extend(reader.remarks);
@@ -76,12 +67,13 @@ struct Reader<'a> {
     has_normals: bool,
     /// What is not taken, or otherwise than it is meant, a sentence each.
     remarks: Vec<String>,
+    unread: Unread,
 }
 
 impl Reader<'_> {
     fn visit(&mut self, prim: &Prim, above: &str, outer: DMat4) -> Result<(), MeshFileError> {
-        let is_hidden = prim.value("visibility").and_then(Value::text) == Some("invisible");
-        let purpose = prim.value("purpose").and_then(Value::text);
+        let is_hidden = prim.text("visibility") == Some("invisible");
+        let purpose = prim.text("purpose");
         let is_inactive = prim.field("active").and_then(Value::number) == Some(0.0);
         if prim.specifier != Specifier::Def
             || is_hidden
@@ -91,26 +83,12 @@ impl Reader<'_> {
             return Ok(());
         }
         let path = format!("{above}/{}", prim.name);
-        let arcs = ["inherits", "inheritPaths", "specializes"];
-        if arcs.iter().any(|arc| prim.field(arc).is_some()) {
-            let remark = format!(
-                "what {path} inherits or specializes is not read: {}",
-                stage::REMEDY
-            );
-            self.remarks.push(remark);
-        }
-        match prim.type_name.as_str() {
-            // What it multiplies is below it, and shown nowhere else.
-            "PointInstancer" => {
-                self.remarks.push(format!("{path} is a PointInstancer, of which nothing is read: turn its instances into meshes"));
+        for reason in Reason::of(prim) {
+            self.unread.add(reason, &path);
+            if reason == Reason::Instancer {
+                // What it multiplies is below it, and shown nowhere else.
                 return Ok(());
             }
-            kind if SHAPES.contains(&kind) => {
-                self.remarks.push(format!(
-                    "{path} is a {kind} and not read: turn it into a mesh"
-                ));
-            }
-            _ => {}
         }
         let placed = placed(prim, outer).map_err(|reason| self.invalid(&path, reason))?;
         if prim.type_name == "Mesh" {
@@ -138,7 +116,7 @@ impl Reader<'_> {
         self.lacks_uv |= polygons.uvs.is_none();
         self.has_normals |= polygons.normals.is_some();
         // Mirrored meshes turn the other way.
-        let is_left = prim.value("orientation").and_then(Value::text) == Some("leftHanded");
+        let is_left = prim.text("orientation") == Some("leftHanded");
         let is_turned = is_left != (placed.determinant() < 0.0);
         let part = self.mesh.part_named(path);
         self.limit("parts", self.mesh.names.len(), MAX_PARTS)?;
@@ -341,6 +319,11 @@ def Xform "a"
         for (remark, name) in mesh.remarks.iter().zip(named) {
             assert!(remark.starts_with(name), "{remark}");
         }
+        // Many of a kind are one remark.
+        let more = format!("{shapes}def Sphere \"other_ball\"\n{{\n}}\n");
+        let mesh = read("a.usda", more.as_bytes()).unwrap();
+        assert!(mesh.remarks[0].starts_with("/ball (and 1 more) is a Sphere"));
+        assert_eq!(mesh.remarks.len(), named.len());
     }
 
     #[test]

@@ -1,4 +1,4 @@
-use super::tests::{SAMPLERS, ball, mean_of, render};
+use super::tests::{SAMPLERS, ball, half_black, mean_of, render};
 use super::*;
 use crate::bsdf::HairMaterial;
 use crate::color::{Rgb, luminance};
@@ -187,10 +187,7 @@ fn the_floor_joins_the_backdrop_under_lamps() {
 #[test]
 fn light_asked_for_by_chance_keeps_its_mean() {
     let groom = ball(3_000, 12.0, 300.0);
-    let half_black = {
-        let lit = |i: usize| if i % 32 < 16 { Rgb::ONE } else { Rgb::ZERO };
-        Environment::from_texels(32, 16, (0..512).map(lit).collect())
-    };
+    let half_black = half_black();
     let under = |environment: &Environment, lamps: &[Lamp]| {
         Scene::build(SceneParts {
             groom: &groom,

@@ -159,16 +159,19 @@ fn a_single_absorbing_strand_shows_its_albedo() {
     }
 }
 
+/// Light from one half of all directions.
+pub(super) fn half_black() -> Environment {
+    let lit = |i: usize| if i % 32 < 16 { Rgb::ONE } else { Rgb::ZERO };
+    Environment::from_texels(32, 16, (0..512).map(lit).collect())
+}
+
 /// Same mean in every light; |z| < 4 for each sampler against the mean of MIS. The planted fault
 /// is the bare product as the target of the only ray: half of the sky is black, so light from lit
 /// strands on the dark side is lost.
 #[test]
 fn samplers_agree_and_the_bare_product_does_not() {
     let groom = ball(3_000, 12.0, 300.0);
-    let half_black = {
-        let lit = |i: usize| if i % 32 < 16 { Rgb::ONE } else { Rgb::ZERO };
-        Environment::from_texels(32, 16, (0..512).map(lit).collect())
-    };
+    let half_black = half_black();
     let lights = [
         ("studio", Environment::studio()),
         (

@@ -114,6 +114,11 @@ impl Prim {
         self.property(name)?.any_value()
     }
 
+    /// The word or text that is the value of an attribute.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        self.value(name).and_then(Value::text)
+    }
+
     /// Whether an applied schema is among those of the prim.
     pub fn has_api(&self, name: &str) -> bool {
         matches!(self.field("apiSchemas"), Some(Value::Texts(all)) if all.iter().any(|a| a == name))

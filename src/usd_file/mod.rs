@@ -28,7 +28,7 @@ pub use compose::compose;
 pub use error::UsdFileError;
 pub use files::{Files, Open, Unfollowed, is_resolved_elsewhere};
 pub use layer::{Fields, Layer, Prim, Property, Specifier, VariantSet};
-pub(crate) use transform::{meters_per_unit, placed, to_meters};
+pub(crate) use transform::{is_z_up, meters_per_unit, placed, to_meters};
 pub use value::{Reference, Value};
 pub use zip::{Member, members};
 

@@ -10,10 +10,15 @@ pub(crate) fn meters_per_unit(layer: &Layer) -> f64 {
     meters.filter(|m| *m > 0.0 && m.is_finite()).unwrap_or(0.01)
 }
 
+/// Whether Z points up and not Y, if a layer says.
+pub(crate) fn is_z_up(layer: &Layer) -> Option<bool> {
+    (layer.field("upAxis").and_then(Value::text)).map(|axis| axis == "Z")
+}
+
 /// From the units of a layer to meters with Y up.
 pub(crate) fn to_meters(layer: &Layer) -> DMat4 {
     let mut root = DMat4::from_scale(DVec3::splat(meters_per_unit(layer)));
-    if layer.field("upAxis").and_then(Value::text) == Some("Z") {
+    if is_z_up(layer) == Some(true) {
         root *= DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2);
     }
     root

@@ -1,7 +1,7 @@
-//! Curves of Mitsuba 3 (`bsplinecurve`): a control point and its radius a line, an empty line after each strand.
+//! Curves of Mitsuba 3 (`bsplinecurve`).
 
 use super::{Lines, WriteError};
-use crate::export::mitsuba::interpolating_b_spline;
+use crate::export::mitsuba::write_strand;
 use glam::Vec4;
 use std::io::Write;
 
@@ -10,10 +10,7 @@ pub(super) fn write(out: &mut impl Write, lines: &Lines<'_>) -> Result<(), Write
         let points: Vec<Vec4> = (lines.range(strand))
             .map(|i| lines.points[i].extend(0.5 * lines.widths[i]))
             .collect();
-        for p in interpolating_b_spline(&points) {
-            writeln!(out, "{} {} {} {}", p.x, p.y, p.z, p.w.max(0.0))?;
-        }
-        writeln!(out)?;
+        write_strand(out, &points)?;
     }
     Ok(())
 }

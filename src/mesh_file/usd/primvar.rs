@@ -24,7 +24,7 @@ impl<'a> Primvar<'a> {
 
     /// Normals; subdivision surfaces have none but those of their limit.
     pub(super) fn normals(prim: &'a Prim) -> Option<Self> {
-        if prim.value("subdivisionScheme").and_then(Value::text) != Some("none") {
+        if prim.text("subdivisionScheme") != Some("none") {
             return None;
         }
         if let Some(property) = prim.property("primvars:normals") {

@@ -3,7 +3,7 @@
 use super::polygons::{Polygons, ints};
 use super::primvar::floats;
 use crate::mesh_file::catmull_clark::{Cage, Rule, key};
-use crate::usd_file::{Prim, Value};
+use crate::usd_file::Prim;
 use glam::{DVec3, Vec2};
 use std::collections::HashMap;
 
@@ -17,8 +17,7 @@ const MOST_FACES: usize = 2_000_000;
 
 /// The surface that a mesh stands for, and what is to be said about it.
 pub(super) fn of(prim: &Prim, cage: Polygons) -> (Polygons, Option<String>) {
-    let word = |name| prim.value(name).and_then(Value::text);
-    match word("subdivisionScheme").unwrap_or("catmullClark") {
+    match prim.text("subdivisionScheme").unwrap_or("catmullClark") {
         "catmullClark" => {}
         "loop" => {
             return (
@@ -43,16 +42,17 @@ pub(super) fn of(prim: &Prim, cage: Polygons) -> (Polygons, Option<String>) {
 }
 
 fn split(prim: &Prim, polygons: &Polygons, levels: usize) -> Polygons {
-    let word = |name| prim.value(name).and_then(Value::text);
     let mut cage = Cage {
         counts: polygons.counts.clone(),
         corners: polygons.corners.clone(),
         creases: creases(prim),
         peaks: peaks(prim),
-        keeps_corners: !matches!(word("interpolateBoundary"), Some("edgeOnly" | "none")),
+        keeps_corners: !matches!(prim.text("interpolateBoundary"), Some("edgeOnly" | "none")),
     };
     let mut points = polygons.points.clone();
-    let seams = word("faceVaryingLinearInterpolation").unwrap_or("cornersPlus1");
+    let seams = prim
+        .text("faceVaryingLinearInterpolation")
+        .unwrap_or("cornersPlus1");
     let rule = match seams {
         "all" => Rule::Linear,
         _ => Rule::Smooth,

@@ -110,12 +110,11 @@ impl Node {
         let blur = (8.0 * f32::EPSILON) * reach * inverse.abs();
         let (enter, leave) = (start - blur, start + blur);
         let down = inverse.is_negative_bitmask() as usize;
-        let [x, y, z] = [0, 1, 2];
         let (mut met, mut begins) = (0, [L::splat(0.0); CHILDREN / TOGETHER]);
         for (part, begins) in begins.iter_mut().enumerate() {
-            let x = self.slab::<L>(x, part, down, inverse[x], [enter[x], leave[x]]);
-            let y = self.slab::<L>(y, part, down, inverse[y], [enter[y], leave[y]]);
-            let z = self.slab::<L>(z, part, down, inverse[z], [enter[z], leave[z]]);
+            let x = self.slab::<L>(0, part, down, inverse.x, [enter.x, leave.x]);
+            let y = self.slab::<L>(1, part, down, inverse.y, [enter.y, leave.y]);
+            let z = self.slab::<L>(2, part, down, inverse.z, [enter.z, leave.z]);
             let begin = L::max(L::max(L::splat(0.0), x.0), L::max(y.0, z.0));
             let end = L::min(L::min(L::splat(limit), x.1), L::min(y.1, z.1));
             met |= L::le(begin, end) << (part * TOGETHER);
