@@ -7,7 +7,7 @@
 mod clock;
 
 use clock::thread_seconds;
-use vair::bake::{Photon, Sides, fly};
+use vair::bake::{Photon, Sides, fly_all};
 use vair::fiber::Fiber;
 use vair::species::Species;
 
@@ -72,16 +72,18 @@ fn measure(name: &str, species: &Species, all: bool) {
 /// Flies photons from every inclination. Seconds and events.
 fn round(fiber: &Fiber) -> (f64, u64) {
     let start = thread_seconds();
-    let mut events = 0;
-    for i in 0..PHOTONS {
+    let photons = (0..PHOTONS).map(|i| {
         let bin = (i % 16) as f64 / 8.0 - 1.0;
-        let photon = Photon {
+        Photon {
             seed: 0,
             stream: i,
             sin_range: (bin, bin + 0.125),
             sides: Sides::ALL,
-        };
-        events += u64::from(fly(fiber, &photon, 1000).events);
-    }
+        }
+    });
+    let mut events = 0;
+    fly_all(fiber, photons, false, 1000, |_, flight| {
+        events += u64::from(flight.events);
+    });
     (thread_seconds() - start, events)
 }

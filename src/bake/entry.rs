@@ -1,6 +1,6 @@
 //! Where photons start: evenly over inclination, width, length and rotation of the fiber.
 
-use super::fork::fork;
+use super::fork::{Fork, fork};
 use super::microfacet::{Ratio, Turn};
 use super::photon::follow_from;
 use super::{End, Flight, follow};
@@ -85,16 +85,7 @@ pub fn fly_forked(
     let Some((p, hit)) = entry.met else {
         return book(PHOTON, entry.missed());
     };
-    let ratio = Ratio {
-        eta: fiber.eta(Region::Outside, hit.to),
-        inverse: fiber.eta(hit.to, Region::Outside),
-    };
-    let forked = match fiber.optics(hit.part) {
-        Optics::Dielectric { roughness } if ratio.eta != 1.0 => {
-            fork(entry.dir, hit.normal, ratio, *roughness, &mut rng)
-        }
-        _ => None,
-    };
+    let forked = entry.fork(fiber, &mut rng);
     let mut branch = |part: u64, turn: Option<Turn>| {
         if part > 0 {
             let way = follow_from(fiber, p, entry.dir, hit, turn, &mut rng, max_events);
@@ -102,8 +93,7 @@ pub fn fly_forked(
         }
     };
     match forked {
-        Some(fork) => {
-            let part = ((fork.reflectance * PHOTON as f64) as u64).min(PHOTON);
+        Some((part, fork)) => {
             branch(part, Some(fork.reflected));
             branch(PHOTON - part, Some(fork.transmitted));
         }
@@ -111,22 +101,46 @@ pub fn fly_forked(
     }
 }
 
+/// Flies many photons, each as [`fly`] does, or [`fly_forked`] if `forked`, to the bit; where the processor has AVX-512 and
+/// the fiber is clear keratin and air, eight at a time and several times as fast.
+///
+/// * `book`: gets every flight and its part of a photon in units of 2^-32, in any order.
+pub fn fly_all(
+    fiber: &Fiber,
+    photons: impl Iterator<Item = Photon>,
+    forked: bool,
+    max_events: u32,
+    mut book: impl FnMut(u64, Flight),
+) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(packets) = super::packet::Packets::new(fiber) {
+        return packets.fly(photons, forked, max_events, book);
+    }
+    for photon in photons {
+        if forked {
+            fly_forked(fiber, &photon, max_events, &mut book);
+        } else {
+            book(PHOTON, fly(fiber, &photon, max_events));
+        }
+    }
+}
+
 /// Where a photon meets the fiber.
-struct Entry {
+pub(super) struct Entry {
     /// Cosine and sine of the inclination of the query direction.
-    query: DVec2,
+    pub(super) query: DVec2,
     /// Direction of travel.
-    dir: DVec3,
+    pub(super) dir: DVec3,
     /// Cosine and sine of the fiber's rotation.
     turn: DVec2,
     /// Whether the fiber's mirror image is what the photon stands for.
     mirrored: bool,
     /// Place and boundary, unless it missed.
-    met: Option<(DVec3, Hit)>,
+    pub(super) met: Option<(DVec3, Hit)>,
 }
 
 impl Entry {
-    fn find(fiber: &Fiber, photon: &Photon, rng: &mut Rng) -> Self {
+    pub(super) fn find(fiber: &Fiber, photon: &Photon, rng: &mut Rng) -> Self {
         let (along, across) = stratified(photon);
         let (lo, hi) = photon.sin_range;
         let sin = lo + (hi - lo) * along;
@@ -157,7 +171,25 @@ impl Entry {
         }
     }
 
-    fn missed(&self) -> Flight {
+    /// Both ways at the first boundary, if it is a dielectric one, and the part of the photon, in units of
+    /// 2^-32, that is reflected.
+    pub(super) fn fork(&self, fiber: &Fiber, rng: &mut Rng) -> Option<(u64, Fork)> {
+        let (_, hit) = self.met?;
+        let ratio = Ratio {
+            eta: fiber.eta(Region::Outside, hit.to),
+            inverse: fiber.eta(hit.to, Region::Outside),
+        };
+        match fiber.optics(hit.part) {
+            Optics::Dielectric { roughness } if ratio.eta != 1.0 => {
+                let fork = fork(self.dir, hit.normal, ratio, *roughness, rng)?;
+                let part = ((fork.reflectance * PHOTON as f64) as u64).min(PHOTON);
+                Some((part, fork))
+            }
+            _ => None,
+        }
+    }
+
+    pub(super) fn missed(&self) -> Flight {
         Flight {
             query: self.query,
             path_um: 0.0,
@@ -168,7 +200,7 @@ impl Entry {
     }
 
     /// A flight through the turned fiber as the query direction sees it.
-    fn seen(&self, way: Flight) -> Flight {
+    pub(super) fn seen(&self, way: Flight) -> Flight {
         let back = DVec2::new(self.turn.x, -self.turn.y);
         Flight {
             query: self.query,

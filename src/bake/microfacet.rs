@@ -107,28 +107,28 @@ pub(super) fn walk(
 }
 
 /// Heights are uniform; the walk starts where this share of the surface lies below.
-const TOP: f64 = 0.999;
+pub(super) const TOP: f64 = 0.999;
 
 /// A walk of this length does not happen: each step escapes with a probability near a half.
-const MAX_STEPS: usize = 256;
+pub(super) const MAX_STEPS: usize = 256;
 
 /// How deep in the microsurface a walk is: the share of the surface that lies below (behind, once
 /// it is upside down), `top * base^exponent` or one minus that, where the exponent is `-1 / Lambda` of
 /// the ray that came down. Nearly all walks are decided by bounds of powers (Bernoulli's inequality)
 /// and of Lambda; roots and powers are computed only for the others.
 #[derive(Clone, Copy)]
-struct Depth {
-    top: f64,
-    base: f64,
-    slope: Slope,
-    flipped: bool,
+pub(super) struct Depth {
+    pub(super) top: f64,
+    pub(super) base: f64,
+    pub(super) slope: Slope,
+    pub(super) flipped: bool,
 }
 
 /// Square of the tangent of a ray's angle to the normal times that of the roughness, as a fraction.
 #[derive(Clone, Copy)]
-struct Slope {
-    across: f64,
-    along: f64,
+pub(super) struct Slope {
+    pub(super) across: f64,
+    pub(super) along: f64,
 }
 
 impl Slope {
@@ -196,18 +196,23 @@ impl Depth {
     /// Where a ray on the microsurface meets it next; `None` if it gets away. `u`: uniform in 0..1.
     #[inline(always)]
     fn free(self, d: DVec3, alpha: f64, u: f64) -> Option<Self> {
-        let slope = Slope::new(d, alpha);
-        if d.z >= FLAT {
+        self.free_along(d.z, Slope::new(d, alpha), u)
+    }
+
+    /// [`Depth::free`] of a ray with the cosine `z` to the normal.
+    #[inline(always)]
+    pub(super) fn free_along(self, z: f64, slope: Slope, u: f64) -> Option<Self> {
+        if z >= FLAT {
             return match self.lets_go(slope, u) {
                 true => None,
                 false => self.free_by_power(slope, u),
             };
         }
-        if d.z > -FLAT {
+        if z > -FLAT {
             return Some(self);
         }
         let top = self.whole_share();
-        if d.z < -STEEP {
+        if z < -STEEP {
             return Some(Self::from_share(u * top));
         }
         // Downward -1 / Lambda is an exponent between 0 and 1.
@@ -247,8 +252,8 @@ impl Depth {
 
 /// A ray this steep leaves or meets the surface without regard to its slope, and one this flat stays
 /// at its depth; cosines.
-const STEEP: f64 = 0.9999;
-const FLAT: f64 = 1e-4;
+pub(super) const STEEP: f64 = 0.9999;
+pub(super) const FLAT: f64 = 1e-4;
 
 /// A microfacet normal visible from `w` (which may point below the horizon).
 #[inline(always)]

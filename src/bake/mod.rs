@@ -19,6 +19,8 @@ mod goal;
 mod keep;
 mod microfacet;
 mod noise;
+#[cfg(target_arch = "x86_64")]
+mod packet;
 mod pass;
 mod photon;
 mod plan;
@@ -36,7 +38,7 @@ mod touched;
 pub use cache::{Cache, CacheSize};
 pub use checkpoint::{Checkpoint, Found, drive};
 pub use content::content_hash;
-pub use entry::{Photon, Sides, fly, fly_forked};
+pub use entry::{Photon, Sides, fly, fly_all, fly_forked};
 pub use find::{find, find_or_bake};
 pub use goal::{Ended, Goal};
 pub use photon::{End, Flight, follow};

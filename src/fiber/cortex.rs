@@ -58,13 +58,18 @@ impl Pigment {
         self.lean.is_none() && self.streaks.is_none()
     }
 
+    /// Whether it is alike all over the cortex and the medulla's walls.
+    pub(super) fn is_plain(&self) -> bool {
+        self.is_even() && (self.walls == 1.0 || self.ratio <= 0.0)
+    }
+
     /// Integral of the density along a ray through keratin from 0 to `t`, micrometers.
     #[inline]
     pub(super) fn along(&self, ray: &UnitRay, t: f64, pieces: Option<&Pieces>) -> f64 {
-        let even = self.is_even();
-        if even && (self.walls == 1.0 || self.ratio <= 0.0) {
+        if self.is_plain() {
             return t;
         }
+        let even = self.is_even();
         let (a, b) = self.within_medulla(ray, t);
         let inside = (b - a).max(0.0);
         let share = match pieces {

@@ -5,7 +5,7 @@ use super::march::Window;
 /// Convergence of a hit, in units of the radius over the ray's radial speed.
 const TOLERANCE: f64 = 1e-12;
 /// A step this small, in the same units, is the last of Newton's: the next would be about its square.
-const LAST_STEP: f64 = 1e-8;
+pub(super) const LAST_STEP: f64 = 1e-8;
 
 /// `c + 2 b t + a t^2`.
 #[derive(Clone, Copy)]

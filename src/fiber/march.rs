@@ -50,7 +50,7 @@ pub(super) enum March {
 /// Cells in one march; at the axis a ray meets a strip a micrometer, so this is some centimeters.
 const MAX_CELLS: usize = 20_000;
 /// Stands for an endless way where infinity would give NaN.
-const AXIAL: f64 = 1e100;
+pub(super) const AXIAL: f64 = 1e100;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Exit {

@@ -19,6 +19,8 @@ mod mesh;
 mod optics;
 mod outline;
 mod packing;
+#[cfg(target_arch = "x86_64")]
+mod packet;
 mod pattern;
 mod scales;
 mod section;
@@ -34,6 +36,8 @@ mod tests;
 pub use error::FiberError;
 pub use mesh::MeshPart;
 pub use optics::{Medium, Optics, Part, Region};
+#[cfg(target_arch = "x86_64")]
+pub(crate) use packet::{PacketShell, Rays};
 pub use triangles::{MeshError, Places};
 
 use crate::math::symmetry::Symmetry;

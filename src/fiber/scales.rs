@@ -8,7 +8,7 @@
 //! `z = end(u)`; where the next strip's surface is lower or higher the difference is a riser, an
 //! exact wall.
 
-mod seek;
+pub(super) mod seek;
 
 use super::pattern::Pattern;
 use super::section::{Line, Section, larger, smaller};
@@ -63,6 +63,12 @@ pub(super) struct Sector {
 }
 
 impl Sector {
+    /// The first of its strips and their number.
+    #[cfg(target_arch = "x86_64")]
+    pub(super) fn strips(&self) -> [u32; 2] {
+        [self.first, self.count]
+    }
+
     /// Its strips of all of them.
     fn stack<'a>(&self, strips: &'a [Strip]) -> &'a [Strip] {
         &strips[self.first as usize..][..self.count as usize]
@@ -81,18 +87,21 @@ pub(super) struct Cell {
 #[derive(Clone, Debug)]
 pub(super) struct Scales {
     pub(super) period: f64,
-    inverse_period: f64,
+    pub(super) inverse_period: f64,
     pub(super) sectors: Vec<Sector>,
     strips: Vec<Strip>,
+    /// The same for rays eight at a time.
+    #[cfg(target_arch = "x86_64")]
+    pub(super) shell: super::packet::Shell,
     /// For each strip the one of the previous and of the next sector that goes on beyond their common
     /// half plane: the same tile's, as a rule.
-    beside: Vec<[u16; 2]>,
+    pub(super) beside: Vec<[u16; 2]>,
     /// Strip at the middle of each step of z, sector by sector.
-    strip_at: Vec<u16>,
+    pub(super) strip_at: Vec<u16>,
     /// Nothing changes along z: a section of any shape without scales.
     pub(super) bare: bool,
     /// Sector that holds the start of each step of the pseudo-angle.
-    start_of_angle: Vec<u16>,
+    pub(super) start_of_angle: Vec<u16>,
     /// Radii that enclose the surface, with a margin above rounding.
     pub(super) rho_min: f64,
     pub(super) rho_max: f64,
@@ -143,6 +152,8 @@ impl Scales {
             period: pattern.period_um,
             inverse_period: 1.0 / pattern.period_um,
             bare: strips.len() == sectors.len() && strips.iter().all(|s| s.slope == [0.0; 2]),
+            #[cfg(target_arch = "x86_64")]
+            shell: super::packet::Shell::new(&sectors, &strips),
             sectors,
             strips,
             start_of_angle: seek::starts_of_angles(lines),

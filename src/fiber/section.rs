@@ -15,7 +15,7 @@ pub(super) struct Section {
     pub(super) a: f64,
     /// Semi-axis along y, micrometers.
     pub(super) b: f64,
-    inverse: [f64; 2],
+    pub(super) inverse: [f64; 2],
     /// `None` for the ellipse itself.
     outline: Option<Outline>,
 }

@@ -6,6 +6,8 @@ pub mod decay;
 pub mod ease;
 pub mod frame;
 pub mod fresnel;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod lanes;
 pub mod octahedral;
 pub(crate) mod quick;
 pub(crate) mod shear;

@@ -4,6 +4,8 @@
 //! of the library's functions; and those differ by a last bit from one processor to the next, which
 //! these do not.
 
+#[cfg(target_arch = "x86_64")]
+use super::lanes::{Avx512, F64x8, U64x8};
 use glam::DVec2;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -35,7 +37,7 @@ pub fn unit_vector(turn: f64) -> DVec2 {
 /// The high bits look up a direction, which the low bits turn a little further.
 #[inline]
 pub fn unit_vector_of(bits: u32) -> DVec2 {
-    let DVec2 { x, y } = DIRECTIONS[(bits >> 24) as usize];
+    let [x, y] = DIRECTIONS[(bits >> 24) as usize];
     // Less than an eightieth of a radian.
     let angle = f64::from((bits & 0x00ff_ffff) as i32 - 0x0080_0000) * (TAU / 4_294_967_296.0);
     let a2 = angle * angle;
@@ -46,11 +48,32 @@ pub fn unit_vector_of(bits: u32) -> DVec2 {
     DVec2::new(x * cos - y * sin, x * sin + y * cos)
 }
 
-/// Directions in the middle of 256 equal sectors.
-static DIRECTIONS: [DVec2; 256] = directions();
+/// [`unit_vector_of`] eight at a time: x and y.
+///
+/// * `bits`: below 2^32.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(crate) fn unit_vectors_of(simd: Avx512, bits: U64x8) -> [F64x8; 2] {
+    let index = bits.right::<24>().left::<1>();
+    let table = DIRECTIONS.as_flattened();
+    let x = simd.gather(table, index);
+    let y = simd.gather(table, index.plus(simd.all_bits(1)));
+    let low = bits.and(simd.all_bits(0x00ff_ffff));
+    let angle =
+        low.minus(simd.all_bits(0x0080_0000)).signed_to_f64() * (TAU / 4_294_967_296.0);
+    let a2 = angle * angle;
+    let (sin, cos) = (
+        angle - angle * a2 * (1.0 / 6.0),
+        1.0 - a2 * (0.5 - a2 * (1.0 / 24.0)),
+    );
+    [x * cos - y * sin, x * sin + y * cos]
+}
 
-const fn directions() -> [DVec2; 256] {
-    let (mut all, mut i) = ([DVec2::ZERO; 256], 0);
+/// Directions in the middle of 256 equal sectors.
+static DIRECTIONS: [[f64; 2]; 256] = directions();
+
+const fn directions() -> [[f64; 2]; 256] {
+    let (mut all, mut i) = ([[0.0; 2]; 256], 0);
     while i < 64 {
         let angle = (i as f64 + 0.5) * (TAU / 256.0);
         // Taylor series of both, to the last bit within a quarter of a turn.
@@ -65,10 +88,10 @@ const fn directions() -> [DVec2; 256] {
             n += 1;
             term *= angle / n as f64;
         }
-        all[i] = DVec2::new(cos, sin);
-        all[i + 64] = DVec2::new(-sin, cos);
-        all[i + 128] = DVec2::new(-cos, -sin);
-        all[i + 192] = DVec2::new(sin, -cos);
+        all[i] = [cos, sin];
+        all[i + 64] = [-sin, cos];
+        all[i + 128] = [-cos, -sin];
+        all[i + 192] = [sin, -cos];
         i += 1;
     }
     all

@@ -4,6 +4,8 @@
 mod rng;
 mod sobol;
 
+#[cfg(target_arch = "x86_64")]
+pub(crate) use rng::RngLanes;
 pub use rng::{Rng, hash64};
 pub use sobol::Sobol;
 

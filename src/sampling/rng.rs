@@ -1,5 +1,8 @@
 //! A counter-based generator: the stream is a hash of (seed, index), then PCG steps.
 
+#[cfg(target_arch = "x86_64")]
+use crate::math::lanes::{Avx512, F64x8, Mask, U64x8};
+
 /// Mixes 64 bits into 64 well distributed bits (the finalizer of SplitMix64, Steele et al. 2014).
 #[inline]
 pub fn hash64(x: u64) -> u64 {
@@ -7,6 +10,9 @@ pub fn hash64(x: u64) -> u64 {
     let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     x ^ (x >> 31)
 }
+
+/// Factor of a generator's step.
+const FACTOR: u64 = 6_364_136_223_846_793_005;
 
 /// PCG-XSH-RR (O'Neill 2014) with 64 bits of state. Frozen: baked tables depend on its bits.
 #[derive(Clone, Debug)]
@@ -27,12 +33,24 @@ impl Rng {
         }
     }
 
+    /// What it is made of: state and increment.
+    #[inline]
+    pub(crate) fn parts(&self) -> [u64; 2] {
+        [self.state, self.increment]
+    }
+
+    /// The generator of these parts.
+    #[inline]
+    pub(crate) fn of_parts([state, increment]: [u64; 2]) -> Self {
+        Self { state, increment }
+    }
+
     /// 32 uniform bits.
     #[inline]
     pub fn bits(&mut self) -> u32 {
         let old = self.state;
         self.state = old
-            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_mul(FACTOR)
             .wrapping_add(self.increment);
         let mixed = (((old >> 18) ^ old) >> 27) as u32;
         mixed.rotate_right((old >> 59) as u32)
@@ -55,6 +73,34 @@ impl Rng {
         let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
         let (sin, cos) = (std::f64::consts::TAU * self.uniform()).sin_cos();
         (radius * cos, radius * sin)
+    }
+}
+
+/// Eight generators side by side, each with the bits that it has alone.
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy)]
+pub(crate) struct RngLanes {
+    pub(crate) state: U64x8,
+    pub(crate) increment: U64x8,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl RngLanes {
+    /// 32 uniform bits of each in `lanes`; the others stay where they are.
+    #[inline(always)]
+    pub(crate) fn bits(&mut self, simd: Avx512, lanes: Mask) -> U64x8 {
+        let old = self.state;
+        let next = old.times(simd.all_bits(FACTOR)).plus(self.increment);
+        self.state = next.or(lanes, old);
+        let mixed = old.right::<18>().xor(old).right::<27>();
+        let turned = mixed.low_turned_right(old.right::<59>());
+        turned.and(simd.all_bits(u64::from(u32::MAX)))
+    }
+
+    /// Uniform in `[0, 1)`; see [`Rng::uniform`].
+    #[inline(always)]
+    pub(crate) fn uniform(&mut self, simd: Avx512, lanes: Mask) -> F64x8 {
+        self.bits(simd, lanes).to_f64() * (1.0 / 4_294_967_296.0)
     }
 }
 

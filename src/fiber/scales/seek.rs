@@ -5,9 +5,9 @@ use crate::fiber::section::{Line, floor};
 use glam::DVec3;
 
 /// Entries of the pseudo-angle table: a few per sector.
-const ANGLE_STEPS: usize = 1024;
+pub(in crate::fiber) const ANGLE_STEPS: usize = 1024;
 /// Steps of z in a period: more than a sector has strips, as a rule, and still a small table.
-const Z_STEPS: usize = 32;
+pub(in crate::fiber) const Z_STEPS: usize = 32;
 
 impl Scales {
     /// The cell above.

@@ -1,0 +1,314 @@
+//! Rays eight at a time: [`Fiber::next_hit`] lane by lane, with the same bits. What is rare is not done
+//! here but left to the search for one ray.
+
+mod cells;
+mod march;
+mod rays;
+
+pub(super) use cells::Shell;
+
+use super::scales::Scales;
+use super::section::Section;
+use super::surface::{OuterState, Surface};
+use super::{Element, Fiber, Hit, HitState, Region};
+use crate::math::lanes::{Avx512, F64x8, Mask, U64x8, Vectors};
+use cells::{Cells, at};
+use glam::DVec3;
+use march::{Marched, StartOn, march};
+use rays::UnitRays;
+
+/// Eight rays and what each starts on, as of [`HitState::bits`].
+#[derive(Clone, Copy)]
+pub(crate) struct Rays {
+    pub(crate) lanes: Mask,
+    pub(crate) origin: Vectors,
+    pub(crate) dir: Vectors,
+    pub(crate) from: U64x8,
+}
+
+/// What eight rays came to. Those in neither mask are left to [`Fiber::next_hit`].
+pub(crate) struct Hits {
+    /// Those that met the outer surface.
+    pub(crate) met: Mask,
+    /// Those that meet none of it where it was looked for.
+    pub(crate) through: Mask,
+    pub(crate) riser: Mask,
+    pub(crate) t: F64x8,
+    /// Unit normals, against the rays.
+    pub(crate) normal: Vectors,
+    /// States to go on from.
+    pub(crate) state: U64x8,
+}
+
+/// The outer surface of a fiber, for rays eight at a time.
+#[derive(Clone, Copy)]
+pub(crate) struct PacketShell<'a> {
+    simd: Avx512,
+    section: &'a Section,
+    scales: &'a Scales,
+}
+
+impl<'a> PacketShell<'a> {
+    /// Rays outside that start on the surface: what they meet of it, or that they leave it.
+    #[inline(always)]
+    pub(crate) fn enter(&self, rays: &Rays) -> Hits {
+        let (simd, scales) = (self.simd, self.scales);
+        let zero = simd.all(0.0);
+        let unit = UnitRays::new(self.section, rays.origin, rays.dir);
+        let sure = rays.lanes & !unit.axial(simd);
+        let (t0, t1, near) = unit.inside_circle(simd, scales.rho_max);
+        let gone = sure & !(near & t1.gt(zero));
+        let t0 = t0.max(zero);
+        let (inner, _, within) = unit.inside_circle(simd, scales.rho_min);
+        let limit = inner.or(within & inner.gt(t0), t1);
+        let lanes = sure & !gone;
+        let (cells, on) = self.start(&unit, t0, rays.from, true);
+        let marched = march(
+            simd,
+            lanes,
+            &unit,
+            t0,
+            cells,
+            true,
+            on,
+            limit,
+            scales.beyond2,
+        );
+        let mut hits = self.hits(rays, marched);
+        hits.through = hits.through | gone;
+        hits
+    }
+
+    /// Rays in the cortex that start on the surface: what they meet of it before they are within all
+    /// scales.
+    #[inline(always)]
+    pub(crate) fn inward(&self, rays: &Rays) -> Hits {
+        let (simd, scales) = (self.simd, self.scales);
+        let zero = simd.all(0.0);
+        let unit = UnitRays::new(self.section, rays.origin, rays.dir);
+        let (t0, t1, within) = unit.inside_circle(simd, scales.rho_min);
+        let inner = within & t1.gt(zero);
+        let (_, end, near) = unit.inside_circle(simd, scales.rho_max);
+        let leave = end.max(zero).or(near, zero);
+        let limit = t0.max(zero).or(inner, leave);
+        let in_shell = unit.c.ge(simd.all(scales.rho_min * scales.rho_min)) | !inner;
+        let lanes = rays.lanes & in_shell & !unit.axial(simd);
+        let (cells, on) = self.start(&unit, zero, rays.from, false);
+        let marched = march(
+            simd,
+            lanes,
+            &unit,
+            zero,
+            cells,
+            false,
+            on,
+            limit,
+            scales.within2,
+        );
+        let mut hits = self.hits(rays, marched);
+        hits.through = hits.through & inner;
+        hits
+    }
+
+    /// Rays in the cortex that meet nothing within all scales: where they meet the surface.
+    #[inline(always)]
+    pub(crate) fn outward(&self, rays: &Rays) -> Hits {
+        let (simd, scales) = (self.simd, self.scales);
+        let zero = simd.all(0.0);
+        let unit = UnitRays::new(self.section, rays.origin, rays.dir);
+        let (_, t1, within) = unit.inside_circle(simd, scales.rho_min);
+        let (_, end, near) = unit.inside_circle(simd, scales.rho_max);
+        let leave = end.max(zero).or(near, zero);
+        let lanes = rays.lanes & within & t1.gt(zero) & !unit.axial(simd);
+        // Lanes that are not asked for look at a place that exists.
+        let t1 = t1.or(lanes, zero);
+        let cells = Cells::locate(simd, scales, unit.at(t1));
+        let on = StartOn {
+            face: Mask::NONE,
+            lower: Mask::NONE,
+            upper: Mask::NONE,
+        };
+        let marched = march(
+            simd,
+            lanes,
+            &unit,
+            t1,
+            cells,
+            false,
+            on,
+            leave.max(t1),
+            scales.within2,
+        );
+        let mut hits = self.hits(rays, marched);
+        hits.through = Mask::NONE;
+        hits
+    }
+
+    /// The cells in which rays start, and what of these the start lies on. See `Scales::start`.
+    #[inline(always)]
+    fn start(&self, unit: &UnitRays, t: F64x8, from: U64x8, outside: bool) -> (Cells<'a>, StartOn) {
+        let (simd, scales) = (self.simd, self.scales);
+        let low = simd.all_bits(0xffff);
+        let kind = from.right::<32>();
+        let face = kind.is(simd.all_bits(FACE));
+        let riser = kind.is(simd.all_bits(RISER));
+        let riser_of_lower = kind.is(simd.all_bits(RISER_OF_LOWER));
+        let mut cells = Cells::new(
+            simd,
+            scales,
+            from.and(low),
+            from.right::<16>().and(low),
+        );
+        let p = unit.at(t);
+        let u = cells.across(p);
+        let end = at(cells.end, u);
+        let middle = 0.5 * (end + at(cells.begin, u));
+        let z = middle.or(face, end);
+        cells.shift = scales.period * ((p.z - z) / scales.period + 0.5).floor();
+        let (upper, lower) = match outside {
+            true => (riser, riser_of_lower),
+            false => (riser_of_lower, riser),
+        };
+        if lower.any() {
+            cells.up(lower);
+            cells.look_up_strips();
+        }
+        (cells, StartOn { face, lower, upper })
+    }
+
+    #[inline(always)]
+    fn hits(&self, rays: &Rays, marched: Marched) -> Hits {
+        let simd = self.simd;
+        let Marched {
+            t,
+            gradient,
+            sector,
+            strip,
+            face,
+            riser,
+            solid_below,
+            through,
+        } = marched;
+        let [ia, ib] = self.section.inverse;
+        let n = Vectors::new(gradient.x * ia, gradient.y * ib, gradient.z);
+        let n = n.normalized();
+        let turned = n.dot(rays.dir).gt(simd.all(0.0));
+        let kind = simd.all_bits(RISER_OF_LOWER).or(
+            solid_below,
+            simd.all_bits(RISER).or(riser, simd.all_bits(FACE)),
+        );
+        Hits {
+            met: face | riser,
+            through,
+            riser,
+            t,
+            normal: n.times(simd.all(-1.0)).or(turned, n),
+            state: sector.plus(strip.left::<16>()).plus(kind.left::<32>()),
+        }
+    }
+}
+
+impl Fiber {
+    /// Its outer surface for rays eight at a time, where [`Fiber::has_packets`].
+    pub(crate) fn packet_shell(&self, simd: Avx512) -> Option<PacketShell<'_>> {
+        match &self.surface {
+            Surface::Scales(scales) if self.has_packets() => Some(PacketShell {
+                simd,
+                section: &self.section,
+                scales,
+            }),
+            _ => None,
+        }
+    }
+
+    /// Whether a ray in the cortex may meet anything but the outer surface.
+    pub(crate) fn has_voids(&self) -> bool {
+        self.medulla.ratio > 0.0
+    }
+
+    /// The void that a ray in the cortex enters before it meets the outer surface, and the way to it times the
+    /// pigment, if it starts on a void or got within all scales.
+    pub(crate) fn void_ahead(&self, origin: DVec3, dir: DVec3, from: HitState) -> Option<Hit> {
+        let rays = super::medulla::Rays {
+            origin,
+            dir,
+            unit: self.section.unit_ray(origin, dir),
+        };
+        let (t0, t1) = match from.element {
+            Element::Void(_) => (0.0, f64::INFINITY),
+            _ => {
+                let (t0, t1) = rays.unit.inside_circle(self.surface.rho_min())?;
+                (t0.max(0.0), t1)
+            }
+        };
+        let (t, element) = self.core_hit(&rays, t0, t1, Some(from.element))?;
+        let mut hit = self.void_hit(&rays, t, element, self.medulla.fill());
+        hit.pigment_um = self.pigment_on(&rays, Region::Cortex, t);
+        Some(hit)
+    }
+
+    /// Whether the way through keratin is what counts of it, as pigment is alike all over it.
+    pub(crate) fn has_even_pigment(&self) -> bool {
+        self.pigment.is_plain()
+    }
+
+    /// Whether rays of it can be traced eight at a time: scales on an elliptic section, voids of air or none.
+    pub(crate) fn has_packets(&self) -> bool {
+        self.triangles.is_none()
+            && self.fusi.is_none()
+            && self.section.is_ellipse()
+            && matches!(self.surface, Surface::Scales(_))
+            && !self.medulla.outlined()
+            && self.medulla.fill() == Region::Void
+    }
+}
+
+const FACE: u64 = 0;
+const RISER: u64 = 1;
+const RISER_OF_LOWER: u64 = 2;
+const VOID: u64 = 3;
+
+impl HitState {
+    /// As one number: the kind of the boundary in the upper half, its place in the lower one.
+    pub(crate) fn bits(self) -> u64 {
+        let outer = |sector: u16, strip: u16| u64::from(sector) | u64::from(strip) << 16;
+        match self.element {
+            Element::Outer(OuterState::Face { sector, strip }) => outer(sector, strip) | FACE << 32,
+            Element::Outer(OuterState::Riser {
+                sector,
+                strip,
+                solid_below: false,
+            }) => outer(sector, strip) | RISER << 32,
+            Element::Outer(OuterState::Riser { sector, strip, .. }) => {
+                outer(sector, strip) | RISER_OF_LOWER << 32
+            }
+            Element::Void(index) => u64::from(index) | VOID << 32,
+            // Fibers that have these have no packets.
+            Element::Outer(OuterState::Smooth)
+            | Element::Outline
+            | Element::Rim(_)
+            | Element::Fusus(_)
+            | Element::Triangle { .. } => u64::MAX,
+        }
+    }
+
+    /// The state of a number.
+    pub(crate) fn of_bits(bits: u64) -> Self {
+        let (sector, strip) = (bits as u16, (bits >> 16) as u16);
+        let riser = |solid_below| {
+            Element::Outer(OuterState::Riser {
+                sector,
+                strip,
+                solid_below,
+            })
+        };
+        Self {
+            element: match bits >> 32 {
+                FACE => Element::Outer(OuterState::Face { sector, strip }),
+                RISER => riser(false),
+                RISER_OF_LOWER => riser(true),
+                _ => Element::Void(bits as u32),
+            },
+        }
+    }
+}
