@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
-use vair::bake::{End, Photon, Sides, fly};
+use vair::bake::{End, Photon, Sides, fly_all};
 use vair::fiber::Fiber;
 use vair::math::frame;
 use vair::table::ScatterTable;
@@ -66,16 +66,15 @@ impl Cells {
             let mut cells = vec![0.0f64; THETAS * PHIS];
             let center = query(i);
             let each = photons / QUERIES as u64;
-            for index in 0..each {
-                let photon = Photon {
-                    seed,
-                    stream: ((i as u64) << 40) | index,
-                    sin_range: ((center - half).sin(), (center + half).sin()),
-                    sides: Sides::ALL,
-                };
-                let flight = fly(fiber, &photon, 1000);
+            let photons = (0..each).map(|index| Photon {
+                seed,
+                stream: ((i as u64) << 40) | index,
+                sin_range: ((center - half).sin(), (center + half).sin()),
+                sides: Sides::ALL,
+            });
+            fly_all(fiber, photons, false, 1000, |_, flight| {
                 let End::Escaped(w) = flight.end else {
-                    continue;
+                    return;
                 };
                 let (sin, cos) = (flight.theta() - center).sin_cos();
                 let w = frame::shift_inclination(w, sin, cos);
@@ -83,7 +82,7 @@ impl Cells {
                 let k = (w.y.atan2(w.x).abs() / PI * PHIS as f64) as usize;
                 cells[j.min(THETAS - 1) * PHIS + k.min(PHIS - 1)] +=
                     flight.share * (-absorption_per_um * flight.path_um).exp();
-            }
+            });
             let mean = cells.iter().enumerate().map(|(cell, sum)| {
                 let (lo, hi) = (theta_edge(cell / PHIS), theta_edge(cell / PHIS + 1));
                 // Integral of cos over the solid angle, on both sides.

@@ -13,7 +13,7 @@ mod clock;
 use clock::thread_seconds;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-use vair::bake::{End, Photon, Sides, fly};
+use vair::bake::{End, Photon, Sides, fly_all};
 use vair::fiber::Fiber;
 use vair::species::{Structure, load};
 
@@ -172,22 +172,23 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 fn walk(fiber: &Fiber, seed: u64) -> Round {
     let mut round = Round::default();
     let start = thread_seconds();
-    for i in 0..PHOTONS {
+    let photons = (0..PHOTONS).map(|i| {
         let bin = (i % 16) as f64 / 8.0 - 1.0;
-        let photon = Photon {
+        Photon {
             seed,
             stream: i,
             sin_range: (bin, bin + 0.125),
             sides: Sides::ALL,
-        };
-        let flight = fly(fiber, &photon, EVENTS);
+        }
+    });
+    fly_all(fiber, photons, false, EVENTS, |_, flight| {
         round.events += f64::from(flight.events);
         match flight.end {
             End::Escaped(_) | End::Missed => round.escaped += 1.0,
             End::Lost => round.lost += 1.0,
             End::Absorbed | End::Truncated => {}
         }
-    }
+    });
     round.seconds = thread_seconds() - start;
     round
 }

@@ -33,6 +33,12 @@ pub(super) struct Deposits {
 }
 
 impl Deposits {
+    /// How many there are.
+    #[inline]
+    pub(super) fn count(&self) -> usize {
+        self.bare.len() + self.colored.len()
+    }
+
     #[inline]
     pub(super) fn push(&mut self, texel: usize, rest: Rest) {
         let kind = match rest.path == 0.0 {

@@ -54,7 +54,7 @@ impl Sides {
 
 /// Entries tried before a photon counts as missed: its beam covers the bounding cylinder, most of
 /// which is fiber, so one in thousands needs more than two.
-const ENTRY_TRIES: u32 = 64;
+pub(super) const ENTRY_TRIES: u32 = 64;
 
 /// Flies a photon: enters uniformly over projected width, one period and all rotations of the fiber,
 /// then reflects, refracts and scatters by chance until it leaves.
@@ -101,30 +101,6 @@ pub fn fly_forked(
     }
 }
 
-/// Flies many photons, each as [`fly`] does, or [`fly_forked`] if `forked`, to the bit; where the processor has AVX-512 and
-/// the fiber is clear keratin and air, eight at a time and several times as fast.
-///
-/// * `book`: gets every flight and its part of a photon in units of 2^-32, in any order.
-pub fn fly_all(
-    fiber: &Fiber,
-    photons: impl Iterator<Item = Photon>,
-    forked: bool,
-    max_events: u32,
-    mut book: impl FnMut(u64, Flight),
-) {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(packets) = super::packet::Packets::new(fiber) {
-        return packets.fly(photons, forked, max_events, book);
-    }
-    for photon in photons {
-        if forked {
-            fly_forked(fiber, &photon, max_events, &mut book);
-        } else {
-            book(PHOTON, fly(fiber, &photon, max_events));
-        }
-    }
-}
-
 /// Where a photon meets the fiber.
 pub(super) struct Entry {
     /// Cosine and sine of the inclination of the query direction.
@@ -141,34 +117,45 @@ pub(super) struct Entry {
 
 impl Entry {
     pub(super) fn find(fiber: &Fiber, photon: &Photon, rng: &mut Rng) -> Self {
+        let (mut entry, mut across) = Self::aim(photon, rng);
+        for _ in 0..ENTRY_TRIES {
+            let origin = entry.origin(fiber, across, rng);
+            if let Some(hit) = fiber.next_hit(origin, entry.dir, Region::Outside, None) {
+                entry.met = Some((origin + hit.t * entry.dir, hit));
+                break;
+            }
+            across = 2.0 * rng.uniform() - 1.0;
+        }
+        entry
+    }
+
+    /// A direction, and the first place across the beam, -1..1.
+    #[inline(always)]
+    pub(super) fn aim(photon: &Photon, rng: &mut Rng) -> (Self, f64) {
         let (along, across) = stratified(photon);
         let (lo, hi) = photon.sin_range;
         let sin = lo + (hi - lo) * along;
         let cos = (1.0 - sin * sin).max(0.0).sqrt();
         let (turns, mirrored) = photon.sides.pick(rng.uniform());
         let turn = unit_vector(turns);
-        let dir = rotate(DVec3::new(-cos, 0.0, -sin), turn);
-        let radius = fiber.bounding_radius_um();
-        let mut h = 2.0 * across - 1.0;
-        let mut met = None;
-        for _ in 0..ENTRY_TRIES {
-            // On the side of the bounding cylinder that the beam comes from, a little outside it.
-            let x = (1.0 - h * h).max(0.0).sqrt() + 1e-3;
-            let z = fiber.period_um() * rng.uniform();
-            let origin = rotate(DVec3::new(radius * x, radius * h, z), turn);
-            if let Some(hit) = fiber.next_hit(origin, dir, Region::Outside, None) {
-                met = Some((origin + hit.t * dir, hit));
-                break;
-            }
-            h = 2.0 * rng.uniform() - 1.0;
-        }
-        Self {
+        let entry = Self {
             query: DVec2::new(cos, sin),
-            dir,
+            dir: rotate(DVec3::new(-cos, 0.0, -sin), turn),
             turn,
             mirrored,
-            met,
-        }
+            met: None,
+        };
+        (entry, 2.0 * across - 1.0)
+    }
+
+    /// Where a photon at a place across the beam comes from: on the side of the bounding cylinder that the beam
+    /// comes from, a little outside it.
+    #[inline(always)]
+    pub(super) fn origin(&self, fiber: &Fiber, across: f64, rng: &mut Rng) -> DVec3 {
+        let radius = fiber.bounding_radius_um();
+        let x = (1.0 - across * across).max(0.0).sqrt() + 1e-3;
+        let z = fiber.period_um() * rng.uniform();
+        rotate(DVec3::new(radius * x, radius * across, z), self.turn)
     }
 
     /// Both ways at the first boundary, if it is a dielectric one, and the part of the photon, in units of
@@ -182,8 +169,7 @@ impl Entry {
         match fiber.optics(hit.part) {
             Optics::Dielectric { roughness } if ratio.eta != 1.0 => {
                 let fork = fork(self.dir, hit.normal, ratio, *roughness, rng)?;
-                let part = ((fork.reflectance * PHOTON as f64) as u64).min(PHOTON);
-                Some((part, fork))
+                Some((fork.part(), fork))
             }
             _ => None,
         }

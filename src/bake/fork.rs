@@ -8,6 +8,7 @@
 use super::microfacet::{Ratio, Turn, walk};
 use crate::math::fresnel;
 use crate::sampling::Rng;
+use crate::table::PHOTON;
 use glam::DVec3;
 
 /// The two ways at a dielectric boundary and the share of the light that goes each, summing to 1.
@@ -20,6 +21,13 @@ pub(super) struct Fork {
     pub reflected: Turn,
     /// Where light goes that passed the first facet.
     pub transmitted: Turn,
+}
+
+impl Fork {
+    /// The part of a photon that the first facet reflects, in units of 2^-32.
+    pub(super) fn part(&self) -> u64 {
+        ((self.reflectance * PHOTON as f64) as u64).min(PHOTON)
+    }
 }
 
 /// Forks at a dielectric boundary. `None` if a walk on a rough one does not end.

@@ -3,8 +3,9 @@
 use super::cylinder::{Chance, Cylinder};
 use super::deposit::{Deposit, Deposits, Rest};
 use super::entry::{NODE_BITS, Stratified};
+use super::many::Many;
 use super::tally::Tally;
-use super::{End, Flight, Photon, Settings, Sides, fly, fly_forked};
+use super::{End, Flight, Photon, Settings, Sides};
 use crate::fiber::Fiber;
 use crate::math::frame::shift_inclination;
 use crate::math::unicube::Unicube;
@@ -12,13 +13,14 @@ use crate::table::{Mode, Nodes, PHOTON};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
 
-/// Photons whose deposits are collected before they are added to the sums: enough for the processor to
+/// Deposits that are collected before they are added to the sums: enough for the processor to
 /// fetch many sums at once, few enough to stay in its nearest cache.
-const COLLECTED: u64 = 256;
+const COLLECTED: usize = 256;
 
 /// The photons of one node.
 pub(super) struct Shot<'a> {
     fiber: &'a Fiber,
+    many: Many<'a>,
     settings: &'a Settings,
     cube: &'a Unicube,
     node: usize,
@@ -41,6 +43,7 @@ impl<'a> Shot<'a> {
         let [from, to] = nodes.theta_range(node);
         Self {
             fiber,
+            many: Many::new(fiber),
             settings,
             cube,
             node,
@@ -63,16 +66,35 @@ impl<'a> Shot<'a> {
     pub(super) fn fly(&self, range: Range<u64>, tally: &mut Tally) {
         tally.emit(range.end - range.start);
         let mut deposits = Deposits::default();
-        let mut start = range.start;
-        while start < range.end {
-            let end = range.end.min(start + COLLECTED);
-            match &self.cylinder {
-                Some(cylinder) => self.cross(cylinder, start..end, &mut deposits, tally),
-                None => (start..end).for_each(|i| self.follow(i, &mut deposits, tally)),
+        if let Some(cylinder) = &self.cylinder {
+            let mut start = range.start;
+            while start < range.end {
+                let end = range.end.min(start + COLLECTED as u64);
+                self.cross(cylinder, start..end, &mut deposits, tally);
+                tally.escape(&mut deposits, &self.settings.levels);
+                start = end;
             }
-            tally.escape(&mut deposits, &self.settings.levels);
-            start = end;
+            return;
         }
+        let settings = self.settings;
+        let photons = range.map(|index| Photon {
+            seed: settings.seed_of_photons(),
+            stream: ((self.node as u64) << NODE_BITS) | index,
+            sin_range: self.sin_range,
+            sides: self.sides,
+        });
+        self.many.fly(
+            photons,
+            settings.fork,
+            settings.max_events,
+            |part, flight| {
+                self.book(part, &flight, &mut deposits, tally);
+                if deposits.count() >= COLLECTED {
+                    tally.escape(&mut deposits, &settings.levels);
+                }
+            },
+        );
+        tally.escape(&mut deposits, &settings.levels);
     }
 
     /// Flies photons through a bare cylinder.
@@ -119,24 +141,6 @@ impl<'a> Shot<'a> {
                 }),
                 None => tally.truncate(rest, &self.settings.levels),
             }
-        }
-    }
-
-    fn follow(&self, index: u64, deposits: &mut Deposits, tally: &mut Tally) {
-        let photon = Photon {
-            seed: self.settings.seed_of_photons(),
-            stream: ((self.node as u64) << NODE_BITS) | index,
-            sin_range: self.sin_range,
-            sides: self.sides,
-        };
-        let max_events = self.settings.max_events;
-        if self.settings.fork {
-            fly_forked(self.fiber, &photon, max_events, |part, flight| {
-                self.book(part, &flight, deposits, tally);
-            });
-        } else {
-            let flight = fly(self.fiber, &photon, max_events);
-            self.book(PHOTON, &flight, deposits, tally);
         }
     }
 

@@ -117,6 +117,12 @@ impl Bodies {
         self.cells.is_some()
     }
 
+    /// The cells from which to which rays go.
+    #[cfg(target_arch = "x86_64")]
+    pub(super) fn cells(&self) -> Option<&Cells> {
+        self.cells.as_deref()
+    }
+
     /// Number of bodies.
     pub(super) fn len(&self) -> usize {
         self.bodies.len()

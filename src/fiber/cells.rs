@@ -8,12 +8,14 @@
 
 mod faces;
 mod near;
+#[cfg(target_arch = "x86_64")]
+mod sixteen;
 #[cfg(test)]
 mod tests;
 mod walk;
 
 use super::section::nearest_image;
-use faces::{Block, Least};
+use faces::{Block, Fours, Tester};
 use glam::{DVec2, DVec3, IVec3};
 use near::Near;
 
@@ -72,6 +74,9 @@ pub(super) struct Cells {
     inverse: DVec2,
     rooms: Vec<Room>,
     blocks: Vec<Block>,
+    /// The same for sixteen faces at a time.
+    #[cfg(target_arch = "x86_64")]
+    sixteens: Vec<sixteen::Faces>,
     /// By slot: four a block.
     links: Vec<Link>,
     forks: Vec<Vec<Link>>,
@@ -82,10 +87,13 @@ pub(super) struct Cells {
 
 /// A cell in the store.
 #[derive(Clone, Copy, Debug)]
-struct Room {
+pub(in crate::fiber) struct Room {
     center: DVec3,
     first: u32,
     end: u32,
+    /// Of its faces by sixteens.
+    #[cfg(target_arch = "x86_64")]
+    first_sixteen: u32,
     air: bool,
     rim: bool,
 }
@@ -134,6 +142,8 @@ impl Cells {
             inverse: 1.0 / semi,
             rooms: Vec::with_capacity(cells.len()),
             blocks: Vec::new(),
+            #[cfg(target_arch = "x86_64")]
+            sixteens: Vec::new(),
             links: Vec::new(),
             forks: Vec::new(),
             owners: Vec::new(),
@@ -151,10 +161,19 @@ impl Cells {
                     store.links.push(link);
                 }
             }
+            #[cfg(target_arch = "x86_64")]
+            let first_sixteen = store.sixteens.len() as u32;
+            #[cfg(target_arch = "x86_64")]
+            {
+                let blocks = store.blocks[first as usize..].chunks(4);
+                store.sixteens.extend(blocks.map(sixteen::Faces::new));
+            }
             store.rooms.push(Room {
                 center: cell.center,
                 first,
                 end: store.blocks.len() as u32,
+                #[cfg(target_arch = "x86_64")]
+                first_sixteen,
                 air: cell.air,
                 rim: cell.rim,
             });
@@ -199,7 +218,7 @@ impl Cells {
                 for x in 0..count.x {
                     let middle = (IVec3::new(x, y, z).as_dvec3() + 0.5) / self.near.inverse;
                     let p = middle - semi.extend(0.0);
-                    cell = self.seek(self.place(cell, p)).cell;
+                    cell = self.seek(Fours, self.place(cell, p)).cell;
                     self.near.cells.push(cell);
                 }
             }
@@ -220,13 +239,19 @@ impl Cells {
 
     /// What is behind a face at a place on it, of any matter or only of one.
     #[inline]
-    fn behind<'a>(&'a self, place: Place, link: &'a Link, air: Option<bool>) -> &'a Link {
+    fn behind<'a>(
+        &'a self,
+        faces: impl Tester,
+        place: Place,
+        link: &'a Link,
+        air: Option<bool>,
+    ) -> &'a Link {
         if link.kind != Kind::Fork {
             return link;
         }
         let (mut best, mut most) = (link, f32::NEG_INFINITY);
         for way in &self.forks[link.next as usize] {
-            let room = self.room_left(place.through(way)).0;
+            let room = self.room_left(faces, place.through(way)).0;
             if room > most && air.is_none_or(|air| self.rooms[way.next as usize].air == air) {
                 (best, most) = (way, room);
             }
@@ -236,31 +261,27 @@ impl Cells {
 
     /// The place of a point on a face, on the side of air or of keratin.
     #[inline]
-    fn beside(&self, face: u32, p: DVec3, air: bool) -> Place {
+    fn beside(&self, faces: impl Tester, face: u32, p: DVec3, air: bool) -> Place {
         let place = self.place(self.owners[face as usize / 4], p);
         let link = &self.links[face as usize];
         if link.kind == Kind::Walled || self.rooms[place.cell as usize].air == air {
             return place;
         }
-        place.through(self.behind(place, link, Some(air)))
+        place.through(self.behind(faces, place, link, Some(air)))
     }
 
     /// Distance from the nearest face of the cell, negative outside, and the slot of that face.
-    fn room_left(&self, place: Place) -> (f32, usize) {
-        let room = &self.rooms[place.cell as usize];
-        let at = place.at.as_vec3();
-        let mut least = Least::NONE;
-        for (k, block) in self.blocks_of(room).iter().enumerate() {
-            least.take(block.cell - block.dot(at), k);
-        }
-        least.slot(room)
+    #[inline(always)]
+    fn room_left(&self, faces: impl Tester, place: Place) -> (f32, usize) {
+        faces.room_left(self, &self.rooms[place.cell as usize], place.at.as_vec3())
     }
 
     /// The cell of a place, going from cell to cell through the face that it is farthest behind.
-    fn seek(&self, mut place: Place) -> Place {
+    #[inline(always)]
+    fn seek(&self, faces: impl Tester, mut place: Place) -> Place {
         for _ in 0..MOST_CELLS {
-            let (room, slot) = self.room_left(place);
-            let link = self.behind(place, &self.links[slot], None);
+            let (room, slot) = self.room_left(faces, place);
+            let link = self.behind(faces, place, &self.links[slot], None);
             if room >= 0.0 || link.next == NOTHING {
                 break;
             }
@@ -269,9 +290,12 @@ impl Cells {
         place
     }
 
-    #[inline]
-    fn find(&self, p: DVec3) -> Place {
-        self.seek(self.place(self.near.cell(p, 1.0 / self.inverse, self.period), p))
+    #[inline(always)]
+    fn find_by(&self, faces: impl Tester, p: DVec3) -> Place {
+        self.seek(
+            faces,
+            self.place(self.near.cell(p, 1.0 / self.inverse, self.period), p),
+        )
     }
 
     /// Where a ray is within the outline.

@@ -12,20 +12,20 @@ use streaks::Streaks;
 #[derive(Clone, Debug)]
 pub(super) struct Pigment {
     /// Radius of the medulla in units of the semi-axes.
-    ratio: f64,
+    pub(super) ratio: f64,
     /// Pigment of the medulla's walls relative to the cortex.
-    walls: f64,
-    lean: Option<Lean>,
+    pub(super) walls: f64,
+    pub(super) lean: Option<Lean>,
     streaks: Option<Box<Streaks>>,
 }
 
 /// Density that is linear in the radius up to the rim: `base - rise * rho`.
 #[derive(Clone, Copy, Debug)]
-struct Lean {
-    base: f64,
-    rise: f64,
+pub(super) struct Lean {
+    pub(super) base: f64,
+    pub(super) rise: f64,
     /// Radius at which the clear rim begins.
-    rim: f64,
+    pub(super) rim: f64,
 }
 
 /// A straight line crosses a waisted outline four times; more only where it grazes.
@@ -56,6 +56,12 @@ impl Pigment {
     /// Whether it is alike all over the cortex.
     pub(super) fn is_even(&self) -> bool {
         self.lean.is_none() && self.streaks.is_none()
+    }
+
+    /// Whether it lies in streaks.
+    #[cfg(target_arch = "x86_64")]
+    pub(super) fn is_streaked(&self) -> bool {
+        self.streaks.is_some()
     }
 
     /// Whether it is alike all over the cortex and the medulla's walls.
@@ -222,7 +228,7 @@ impl Lean {
     }
 
     /// Closed form: the radius along a ray is `sqrt(a s^2 + k)` with s from the point next to the axis.
-    fn integral(&self, ray: &UnitRay, t0: f64, t1: f64) -> f64 {
+    pub(super) fn integral(&self, ray: &UnitRay, t0: f64, t1: f64) -> f64 {
         let Some((a, b)) = ray.inside_circle(self.rim) else {
             return 0.0;
         };

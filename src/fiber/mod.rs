@@ -18,9 +18,9 @@ mod medulla;
 mod mesh;
 mod optics;
 mod outline;
-mod packing;
 #[cfg(target_arch = "x86_64")]
 mod packet;
+mod packing;
 mod pattern;
 mod scales;
 mod section;
@@ -37,7 +37,7 @@ pub use error::FiberError;
 pub use mesh::MeshPart;
 pub use optics::{Medium, Optics, Part, Region};
 #[cfg(target_arch = "x86_64")]
-pub(crate) use packet::{PacketShell, Rays};
+pub(crate) use packet::{Hits, PacketShell, Rays};
 pub use triangles::{MeshError, Places};
 
 use crate::math::symmetry::Symmetry;

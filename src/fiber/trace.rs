@@ -126,7 +126,7 @@ impl Fiber {
     }
 
     #[inline]
-    pub(super) fn pigment_on(&self, rays: &Rays, region: Region, t: f64) -> f64 {
+    fn pigment_on(&self, rays: &Rays, region: Region, t: f64) -> f64 {
         match region {
             Region::Outside | Region::Cuticle | Region::Void => 0.0,
             Region::Medulla => t * self.medium(region).pigment,
@@ -149,7 +149,7 @@ impl Fiber {
 
     /// What inside the fiber a ray in the cortex meets in `t0..t1`: the outline of a homogeneous medulla,
     /// a void of another, a fusus.
-    pub(super) fn core_hit(
+    fn core_hit(
         &self,
         rays: &Rays,
         t0: f64,
@@ -269,7 +269,7 @@ impl Fiber {
         self.hit(rays, t, gradient, to, Part::Medulla, element)
     }
 
-    pub(super) fn void_hit(&self, rays: &Rays, t: f64, element: Element, to: Region) -> Hit {
+    fn void_hit(&self, rays: &Rays, t: f64, element: Element, to: Region) -> Hit {
         let point = rays.origin + t * rays.dir;
         let gradient = match (element, &self.fusi) {
             (Element::Fusus(face), Some(fusi)) => {

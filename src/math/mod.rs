@@ -1,4 +1,4 @@
-//! Maps of cells, frames, turns, triangles, splines, exponentials, a Bessel function, what is quick in single precision, steps, unit vectors in 32 bits, the unicube map and Fresnel equations.
+//! Maps of cells, frames, turns, triangles, splines, exponentials, a Bessel function, what is quick in single precision, steps, numbers eight at a time, unit vectors in 32 bits, the unicube map and Fresnel equations.
 
 pub(crate) mod bessel;
 pub(crate) mod cells;

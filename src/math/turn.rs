@@ -59,8 +59,7 @@ pub(crate) fn unit_vectors_of(simd: Avx512, bits: U64x8) -> [F64x8; 2] {
     let x = simd.gather(table, index);
     let y = simd.gather(table, index.plus(simd.all_bits(1)));
     let low = bits.and(simd.all_bits(0x00ff_ffff));
-    let angle =
-        low.minus(simd.all_bits(0x0080_0000)).signed_to_f64() * (TAU / 4_294_967_296.0);
+    let angle = low.minus(simd.all_bits(0x0080_0000)).signed_to_f64() * (TAU / 4_294_967_296.0);
     let a2 = angle * angle;
     let (sin, cos) = (
         angle - angle * a2 * (1.0 / 6.0),

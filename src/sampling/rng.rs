@@ -49,9 +49,7 @@ impl Rng {
     #[inline]
     pub fn bits(&mut self) -> u32 {
         let old = self.state;
-        self.state = old
-            .wrapping_mul(FACTOR)
-            .wrapping_add(self.increment);
+        self.state = old.wrapping_mul(FACTOR).wrapping_add(self.increment);
         let mixed = (((old >> 18) ^ old) >> 27) as u32;
         mixed.rotate_right((old >> 59) as u32)
     }

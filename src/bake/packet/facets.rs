@@ -48,9 +48,7 @@ pub(super) fn smooth(
     let chosen = (2.0 * u * (all * all)).lt(parallel * parallel + perpendicular * perpendicular);
     let reflected = total | chosen;
     let mirrored = dir.minus(n.times(2.0 * along));
-    let refracted = dir
-        .times(inverse)
-        .plus(n.times(inverse * -along - cos_t));
+    let refracted = dir.times(inverse).plus(n.times(inverse * -along - cos_t));
     let turned = mirrored.or(reflected, refracted);
     // See [`crate::math::fresnel::renormalize`].
     let turned = turned.times(1.5 - 0.5 * turned.dot(turned));

@@ -6,16 +6,16 @@
 
 mod facets;
 mod flock;
+mod search;
 #[cfg(test)]
 mod tests;
 mod ways;
 
-use super::entry::Photon;
 use super::Flight;
+use super::entry::Photon;
 use crate::fiber::{Fiber, Optics, PacketShell, Part, Region};
 use crate::math::lanes::{Avx512, Row};
 use flock::Flock;
-use ways::Way;
 
 /// Boundaries that a photon may meet, each from both sides: the second of a pair from inside.
 const SIDES: [(Part, Region, Region); 6] = [
@@ -74,15 +74,6 @@ impl<'a> Packets<'a> {
             packets.inverse.0[k] = fiber.eta(far, near);
         }
         Some(packets)
-    }
-
-    /// The way to the next boundary in the cortex times the pigment along it.
-    #[inline(always)]
-    fn pigment_um(&self, way: &Way, t: f64) -> f64 {
-        if self.has_even_pigment {
-            return t;
-        }
-        self.fiber.pigment_um(way.place(), way.dir(), Region::Cortex, t)
     }
 
     /// Flies photons; see [`super::entry::fly`] and [`super::entry::fly_forked`].

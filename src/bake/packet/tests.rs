@@ -32,7 +32,12 @@ fn photons(count: u64) -> impl Iterator<Item = Photon> {
 
 #[test]
 fn photons_in_company_fly_as_they_do_alone() {
-    for (name, count) in [("human", 6000), ("red-fox", 4000), ("mink", 1000), ("moose", 600)] {
+    for (name, count) in [
+        ("human", 6000),
+        ("red-fox", 4000),
+        ("mink", 1000),
+        ("moose", 600),
+    ] {
         let species = crate::species::load(name, &[]).unwrap();
         for class in &species.classes {
             let station = class.stations.last().unwrap();

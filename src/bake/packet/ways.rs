@@ -14,6 +14,8 @@ pub(super) const UNDER_WAY: usize = 64;
 /// What a photon does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Next {
+    /// Comes to the fiber from far away.
+    Enter,
     /// A rough boundary.
     Rough,
     /// A smooth boundary.
@@ -31,7 +33,7 @@ pub(super) enum Next {
 }
 
 /// How many there are.
-const KINDS: usize = 7;
+const KINDS: usize = 8;
 
 /// The lists in which photons wait, by what they do next.
 pub(super) struct Lists {
@@ -64,6 +66,7 @@ impl Lists {
     #[inline(always)]
     pub(super) fn longest(&self) -> Option<Next> {
         const ALL: [Next; KINDS] = [
+            Next::Enter,
             Next::Rough,
             Next::Smooth,
             Next::Outside,
@@ -103,6 +106,10 @@ pub(super) struct Way {
     pub(super) path_um: f64,
     pub(super) events: u32,
     pub(super) entry: Entry,
+    /// How often it has missed the fiber.
+    pub(super) tries: u32,
+    /// Where the fiber was first met, and the boundary.
+    pub(super) first: (DVec3, Row),
     /// The part of a photon that it is.
     pub(super) part: u64,
     /// The other branch, which begins when this one has ended.

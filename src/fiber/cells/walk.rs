@@ -1,8 +1,8 @@
 //! Rays from cell to cell.
 
-use super::faces::{Block, Least, lane_of};
-use super::{Cells, Kind, MOST_CELLS, NOTHING, OUTLINE, Room};
-use glam::{DVec3, Vec3, Vec4};
+use super::faces::{Fours, Tester, lane_of};
+use super::{Cells, Kind, MOST_CELLS, NOTHING, OUTLINE};
+use glam::DVec3;
 
 /// Chords shorter than this are none, micrometers: single precision cannot tell them from a miss.
 const LEAST_UM: f32 = 1e-5;
@@ -22,18 +22,43 @@ impl Cells {
         t1: f64,
         from: Option<u32>,
     ) -> Option<(f64, u32)> {
+        self.enter_by(Fours, (origin, dir), t0, t1, from)
+    }
+
+    /// Where a ray in a void leaves it, and the face.
+    ///
+    /// * `from`: the face that the ray starts on.
+    pub(in crate::fiber) fn leave(
+        &self,
+        origin: DVec3,
+        dir: DVec3,
+        from: Option<u32>,
+    ) -> Option<(f64, u32)> {
+        self.leave_by(Fours, origin, dir, from)
+    }
+
+    /// [`Cells::enter`] by a way to test faces.
+    #[inline(always)]
+    pub(in crate::fiber) fn enter_by(
+        &self,
+        faces: impl Tester,
+        (origin, dir): (DVec3, DVec3),
+        t0: f64,
+        t1: f64,
+        from: Option<u32>,
+    ) -> Option<(f64, u32)> {
         let (mut t, mut limit) = (0.0, None);
         // A void that has just been left is not met again; nor is the outline.
         let (mut place, mut left) = match from {
             Some(face) if face & OUTLINE != 0 => return None,
-            Some(face) => (self.beside(face, origin, false), true),
+            Some(face) => (self.beside(faces, face, origin, false), true),
             None => {
                 let (begin, end) = self.outline(origin, dir)?;
                 (t, limit) = (t0.max(begin), Some(t1.min(end)));
                 if t >= t1.min(end) {
                     return None;
                 }
-                (self.find(origin + t * dir), false)
+                (self.find_by(faces, origin + t * dir), false)
             }
         };
         let away = dir.as_vec3();
@@ -44,7 +69,7 @@ impl Cells {
             }
             let limit = limit.unwrap_or(t1);
             if room.air && !std::mem::take(&mut left) {
-                match self.void(room, place.at.as_vec3(), away) {
+                match faces.void(self, room, place.at.as_vec3(), away, LEAST_UM) {
                     // Past the outline a ray is in a void unless a wall is between: that a face
                     // without one is still ahead is single precision's error.
                     Some((reach, slot)) if reach <= 0.0 || !self.walled(slot) => {
@@ -57,14 +82,14 @@ impl Cells {
                     None => {}
                 }
             }
-            let met = self.way_out(room, place.at.as_vec3(), away, |block| block.cell);
+            let met = faces.way_out(self, room, place.at.as_vec3(), away, true);
             let way = self.reach(met, true, place.at, dir);
             t += way;
             if t >= limit {
                 return None;
             }
             place.at += way * dir;
-            let link = self.behind(place, &self.links[met.1], None);
+            let link = self.behind(faces, place, &self.links[met.1], None);
             match link.kind {
                 Kind::Bare => return Some((t, met.1 as u32)),
                 _ if link.next == NOTHING => return None,
@@ -74,19 +99,19 @@ impl Cells {
         None
     }
 
-    /// Where a ray in a void leaves it, and the face.
-    ///
-    /// * `from`: the face that the ray starts on.
-    pub(in crate::fiber) fn leave(
+    /// [`Cells::leave`] by a way to test faces.
+    #[inline(always)]
+    pub(in crate::fiber) fn leave_by(
         &self,
+        faces: impl Tester,
         origin: DVec3,
         dir: DVec3,
         from: Option<u32>,
     ) -> Option<(f64, u32)> {
         let mut place = match from {
             Some(face) if face & OUTLINE != 0 => self.place(face & !OUTLINE, origin),
-            Some(face) => self.beside(face, origin, true),
-            None => self.find(origin),
+            Some(face) => self.beside(faces, face, origin, true),
+            None => self.find_by(faces, origin),
         };
         let (mut t, mut limit, away) = (0.0, None, dir.as_vec3());
         for _ in 0..MOST_CELLS {
@@ -95,7 +120,7 @@ impl Cells {
                 let end = self.outline(origin, dir).map_or(0.0, |(_, end)| end);
                 limit = Some(end.max(0.0));
             }
-            let met = self.way_out(room, place.at.as_vec3(), away, |block| block.void);
+            let met = faces.way_out(self, room, place.at.as_vec3(), away, false);
             let way = self.reach(met, false, place.at, dir);
             if let Some(limit) = limit
                 && limit <= t + way
@@ -104,48 +129,13 @@ impl Cells {
             }
             t += way;
             place.at += way * dir;
-            let link = self.behind(place, &self.links[met.1], None);
+            let link = self.behind(faces, place, &self.links[met.1], None);
             if link.kind != Kind::Open {
                 return t.is_finite().then_some((t, met.1 as u32));
             }
             place = place.through(link);
         }
         None
-    }
-
-    /// Where the void in a cell begins along a ray, and through which face. Zero or less if it holds
-    /// the start.
-    #[inline]
-    fn void(&self, room: &Room, at: Vec3, dir: Vec3) -> Option<(f32, usize)> {
-        let (mut enter, mut leave) = (Least::NONE, f32::INFINITY * Vec4::ONE);
-        for (k, block) in self.blocks_of(room).iter().enumerate() {
-            let rate = block.dot(dir);
-            let t = (block.void - block.dot(at)) / rate;
-            let ahead = rate.cmpgt(Vec4::ZERO);
-            leave = leave.min(Vec4::select(ahead, t, Vec4::INFINITY));
-            // The greatest is the least of the negative.
-            enter.take(Vec4::select(rate.cmplt(Vec4::ZERO), -t, Vec4::INFINITY), k);
-        }
-        let (enter, slot) = enter.slot(room);
-        (leave.min_element() + enter.min(0.0) > LEAST_UM).then_some((-enter, slot))
-    }
-
-    /// Where a ray leaves a cell, or the void in it, and through which face. Infinite if nowhere.
-    #[inline]
-    fn way_out(
-        &self,
-        room: &Room,
-        at: Vec3,
-        dir: Vec3,
-        offset: impl Fn(&Block) -> Vec4,
-    ) -> (f32, usize) {
-        let mut least = Least::NONE;
-        for (k, block) in self.blocks_of(room).iter().enumerate() {
-            let rate = block.dot(dir);
-            let t = (offset(block) - block.dot(at)) / rate;
-            least.take(Vec4::select(rate.cmpgt(Vec4::ZERO), t, Vec4::INFINITY), k);
-        }
-        least.slot(room)
     }
 
     /// Whether keratin is between the void of a cell and a face of it.

@@ -2,10 +2,22 @@
 
 use super::{Medulla, Rays, Voids};
 use crate::fiber::Region;
+#[cfg(target_arch = "x86_64")]
+use crate::fiber::cells::Cells;
 use crate::fiber::section::Section;
 use glam::DVec3;
 
 impl Medulla {
+    /// The cells that fill it, if they do.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub(in crate::fiber) fn cells(&self) -> Option<&Cells> {
+        match &self.voids {
+            Voids::Bodies(bodies) => bodies.cells(),
+            _ => None,
+        }
+    }
+
     /// First void that a ray in the matrix enters in `t0..t1`.
     #[inline]
     pub(in crate::fiber) fn enter_void(

@@ -1,7 +1,7 @@
 //! The cells of the shell in which eight rays are: [`Scales`]' own search for them, lane by lane.
 
-use super::super::scales::{Scales, Sector, Strip};
 use super::super::scales::seek::{ANGLE_STEPS, Z_STEPS};
+use super::super::scales::{Scales, Sector, Strip};
 use crate::math::lanes::{Avx512, F64x8, LANES, Mask, Row, U64x8, Vectors};
 
 /// Sectors and strips as lines of the cache.
@@ -162,14 +162,8 @@ impl<'a> Cells<'a> {
     /// on there, sectors and strips are still to be looked up.
     #[inline(always)]
     pub(super) fn aside(&mut self, lanes: Mask, second: Mask) {
-        let (index, sector) = (
-            self.first.plus(self.strip).array(),
-            self.sector.array(),
-        );
-        let (mut sectors, mut strips) = (
-            self.sector.numbers().row(),
-            self.strip.numbers().row(),
-        );
+        let (index, sector) = (self.first.plus(self.strip).array(), self.sector.array());
+        let (mut sectors, mut strips) = (self.sector.numbers().row(), self.strip.numbers().row());
         for lane in lanes.lanes() {
             let plane = usize::from(second.has(lane));
             let beside = self.scales.beside[index[lane] as usize][plane];
@@ -258,11 +252,7 @@ impl<'a> Cells<'a> {
     pub(super) fn riser_gradient(&self, end: Pair, p: Vectors) -> Vectors {
         let (_, du) = self.across_gradient(p);
         let along_u = end[1] - end[0];
-        Vectors::new(
-            -along_u * du[0],
-            -along_u * du[1],
-            self.simd.all(1.0),
-        )
+        Vectors::new(-along_u * du[0], -along_u * du[1], self.simd.all(1.0))
     }
 }
 

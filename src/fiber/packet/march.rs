@@ -17,6 +17,14 @@ pub(super) struct StartOn {
     pub(super) upper: Mask,
 }
 
+impl StartOn {
+    pub(super) const NOTHING: Self = Self {
+        face: Mask::NONE,
+        lower: Mask::NONE,
+        upper: Mask::NONE,
+    };
+}
+
 /// What a march came to.
 pub(super) struct Marched {
     pub(super) t: F64x8,

@@ -3,19 +3,23 @@
 
 mod cells;
 mod march;
+mod pigment;
 mod rays;
+mod state;
 
 pub(super) use cells::Shell;
 
+use super::cortex::Pigment;
 use super::scales::Scales;
 use super::section::Section;
-use super::surface::{OuterState, Surface};
-use super::{Element, Fiber, Hit, HitState, Region};
+use super::surface::Surface;
+use super::{Element, Fiber, HitState, Region};
 use crate::math::lanes::{Avx512, F64x8, Mask, U64x8, Vectors};
 use cells::{Cells, at};
 use glam::DVec3;
 use march::{Marched, StartOn, march};
 use rays::UnitRays;
+use state::{FACE, RISER, RISER_OF_LOWER};
 
 /// Eight rays and what each starts on, as of [`HitState::bits`].
 #[derive(Clone, Copy)]
@@ -46,22 +50,94 @@ pub(crate) struct PacketShell<'a> {
     simd: Avx512,
     section: &'a Section,
     scales: &'a Scales,
+    pigment: &'a Pigment,
+    /// Whether the medulla is in pieces.
+    pieces: bool,
 }
 
 impl<'a> PacketShell<'a> {
-    /// Rays outside that start on the surface: what they meet of it, or that they leave it.
+    /// Rays from far away: where they enter the fiber, or that they miss it.
     #[inline(always)]
-    pub(crate) fn enter(&self, rays: &Rays) -> Hits {
+    pub(crate) fn arrive(&self, rays: &Rays) -> Hits {
         let (simd, scales) = (self.simd, self.scales);
         let zero = simd.all(0.0);
-        let unit = UnitRays::new(self.section, rays.origin, rays.dir);
-        let sure = rays.lanes & !unit.axial(simd);
+        // Far origins cost digits: start beside the axis, on the way in.
+        let far = UnitRays::new(self.section, rays.origin, rays.dir);
+        let ahead = (-far.b / far.a).max(zero).or(far.a.gt(zero), zero);
+        let ahead = (ahead - 2.0 * scales.rho_max / far.a.sqrt()).max(zero);
+        let near = Rays {
+            origin: rays.origin.plus(rays.dir.times(ahead)),
+            ..*rays
+        };
+        let unit = UnitRays::new(self.section, near.origin, near.dir);
+        let (t0, limit, lanes, gone) = self.outside(rays.lanes, &unit);
+        let lanes = lanes & !far.axial(simd);
+        // Lanes that are not asked for look at a place that exists.
+        let t0 = t0.or(lanes, zero);
+        let cells = Cells::locate(simd, scales, unit.at(t0));
+        let on = StartOn::NOTHING;
+        let marched = march(
+            simd,
+            lanes,
+            &unit,
+            t0,
+            cells,
+            true,
+            on,
+            limit,
+            scales.beyond2,
+        );
+        let mut hits = self.hits(&near, marched);
+        hits.t = hits.t + ahead;
+        hits.through = hits.through | gone;
+        hits
+    }
+
+    /// Where rays outside may meet the shell: from, to, those that do, and those that surely do not.
+    #[inline(always)]
+    fn outside(&self, lanes: Mask, unit: &UnitRays) -> (F64x8, F64x8, Mask, Mask) {
+        let (simd, scales) = (self.simd, self.scales);
+        let zero = simd.all(0.0);
+        let sure = lanes & !unit.axial(simd);
         let (t0, t1, near) = unit.inside_circle(simd, scales.rho_max);
         let gone = sure & !(near & t1.gt(zero));
         let t0 = t0.max(zero);
         let (inner, _, within) = unit.inside_circle(simd, scales.rho_min);
         let limit = inner.or(within & inner.gt(t0), t1);
-        let lanes = sure & !gone;
+        (t0, limit, sure & !gone, gone)
+    }
+
+    /// What follows from ways to the walls of voids.
+    ///
+    /// * `gradient`: in the unit-circle frame.
+    #[inline(always)]
+    pub(crate) fn void_hits(&self, rays: &Rays, t: F64x8, gradient: Vectors, state: U64x8) -> Hits {
+        Hits {
+            met: rays.lanes,
+            through: Mask::NONE,
+            riser: Mask::NONE,
+            t,
+            normal: self.normal_against(gradient, rays.dir),
+            state,
+        }
+    }
+
+    /// Pigment along rays in the cortex, and the lanes in which it is known. See [`Fiber::pigment_um`].
+    #[inline(always)]
+    pub(crate) fn pigment_um(&self, rays: &Rays, lanes: Mask, t: F64x8) -> (F64x8, Mask) {
+        if self.pieces {
+            return (t, Mask::NONE);
+        }
+        let unit = UnitRays::new(self.section, rays.origin, rays.dir);
+        self.pigment.along_rays(self.simd, lanes, &unit, t)
+    }
+
+    /// Rays outside that start on the surface: what they meet of it, or that they leave it.
+    #[inline(always)]
+    pub(crate) fn enter(&self, rays: &Rays) -> Hits {
+        let (simd, scales) = (self.simd, self.scales);
+        let unit = UnitRays::new(self.section, rays.origin, rays.dir);
+        let (t0, limit, lanes, gone) = self.outside(rays.lanes, &unit);
         let (cells, on) = self.start(&unit, t0, rays.from, true);
         let marched = march(
             simd,
@@ -123,11 +199,7 @@ impl<'a> PacketShell<'a> {
         // Lanes that are not asked for look at a place that exists.
         let t1 = t1.or(lanes, zero);
         let cells = Cells::locate(simd, scales, unit.at(t1));
-        let on = StartOn {
-            face: Mask::NONE,
-            lower: Mask::NONE,
-            upper: Mask::NONE,
-        };
+        let on = StartOn::NOTHING;
         let marched = march(
             simd,
             lanes,
@@ -153,12 +225,7 @@ impl<'a> PacketShell<'a> {
         let face = kind.is(simd.all_bits(FACE));
         let riser = kind.is(simd.all_bits(RISER));
         let riser_of_lower = kind.is(simd.all_bits(RISER_OF_LOWER));
-        let mut cells = Cells::new(
-            simd,
-            scales,
-            from.and(low),
-            from.right::<16>().and(low),
-        );
+        let mut cells = Cells::new(simd, scales, from.and(low), from.right::<16>().and(low));
         let p = unit.at(t);
         let u = cells.across(p);
         let end = at(cells.end, u);
@@ -176,6 +243,16 @@ impl<'a> PacketShell<'a> {
         (cells, StartOn { face, lower, upper })
     }
 
+    /// See [`Section::normal_against`].
+    #[inline(always)]
+    fn normal_against(&self, gradient: Vectors, dir: Vectors) -> Vectors {
+        let [ia, ib] = self.section.inverse;
+        let n = Vectors::new(gradient.x * ia, gradient.y * ib, gradient.z);
+        let n = n.normalized();
+        let turned = n.dot(dir).gt(self.simd.all(0.0));
+        n.times(self.simd.all(-1.0)).or(turned, n)
+    }
+
     #[inline(always)]
     fn hits(&self, rays: &Rays, marched: Marched) -> Hits {
         let simd = self.simd;
@@ -189,10 +266,6 @@ impl<'a> PacketShell<'a> {
             solid_below,
             through,
         } = marched;
-        let [ia, ib] = self.section.inverse;
-        let n = Vectors::new(gradient.x * ia, gradient.y * ib, gradient.z);
-        let n = n.normalized();
-        let turned = n.dot(rays.dir).gt(simd.all(0.0));
         let kind = simd.all_bits(RISER_OF_LOWER).or(
             solid_below,
             simd.all_bits(RISER).or(riser, simd.all_bits(FACE)),
@@ -202,7 +275,7 @@ impl<'a> PacketShell<'a> {
             through,
             riser,
             t,
-            normal: n.times(simd.all(-1.0)).or(turned, n),
+            normal: self.normal_against(gradient, rays.dir),
             state: sector.plus(strip.left::<16>()).plus(kind.left::<32>()),
         }
     }
@@ -216,6 +289,8 @@ impl Fiber {
                 simd,
                 section: &self.section,
                 scales,
+                pigment: &self.pigment,
+                pieces: self.medulla.pieces.is_some(),
             }),
             _ => None,
         }
@@ -226,25 +301,48 @@ impl Fiber {
         self.medulla.ratio > 0.0
     }
 
-    /// The void that a ray in the cortex enters before it meets the outer surface, and the way to it times the
-    /// pigment, if it starts on a void or got within all scales.
-    pub(crate) fn void_ahead(&self, origin: DVec3, dir: DVec3, from: HitState) -> Option<Hit> {
+    /// The next wall of a void along a ray in one (`inside`) or in the cortex, there only if nothing of the outer surface
+    /// comes before: the way, the gradient in the unit-circle frame and the state to go on from.
+    #[inline(always)]
+    pub(crate) fn next_void(
+        &self,
+        origin: DVec3,
+        dir: DVec3,
+        from: HitState,
+        inside: bool,
+        simd: Avx512,
+    ) -> Option<(f64, DVec3, HitState)> {
         let rays = super::medulla::Rays {
             origin,
             dir,
             unit: self.section.unit_ray(origin, dir),
         };
-        let (t0, t1) = match from.element {
-            Element::Void(_) => (0.0, f64::INFINITY),
-            _ => {
-                let (t0, t1) = rays.unit.inside_circle(self.surface.rho_min())?;
-                (t0.max(0.0), t1)
+        let from = match from.element {
+            Element::Void(index) => Some(index),
+            _ => None,
+        };
+        let (t, index) = if inside {
+            match self.medulla.cells() {
+                Some(cells) => cells.leave_by(simd, origin, dir, from)?,
+                None => self.medulla.leave_void(&rays, from)?,
+            }
+        } else {
+            let (t0, t1) = match from {
+                Some(_) => (0.0, f64::INFINITY),
+                None => {
+                    let (t0, t1) = rays.unit.inside_circle(self.surface.rho_min())?;
+                    (t0.max(0.0), t1)
+                }
+            };
+            match self.medulla.cells() {
+                Some(cells) => cells.enter_by(simd, (origin, dir), t0, t1, from)?,
+                None => self.medulla.enter_void(&rays, t0, t1, from)?,
             }
         };
-        let (t, element) = self.core_hit(&rays, t0, t1, Some(from.element))?;
-        let mut hit = self.void_hit(&rays, t, element, self.medulla.fill());
-        hit.pigment_um = self.pigment_on(&rays, Region::Cortex, t);
-        Some(hit)
+        let point = origin + t * dir;
+        let gradient = self.medulla.void_gradient(&self.section, point, index);
+        let element = Element::Void(index);
+        Some((t, gradient, HitState { element }))
     }
 
     /// Whether the way through keratin is what counts of it, as pigment is alike all over it.
@@ -260,55 +358,5 @@ impl Fiber {
             && matches!(self.surface, Surface::Scales(_))
             && !self.medulla.outlined()
             && self.medulla.fill() == Region::Void
-    }
-}
-
-const FACE: u64 = 0;
-const RISER: u64 = 1;
-const RISER_OF_LOWER: u64 = 2;
-const VOID: u64 = 3;
-
-impl HitState {
-    /// As one number: the kind of the boundary in the upper half, its place in the lower one.
-    pub(crate) fn bits(self) -> u64 {
-        let outer = |sector: u16, strip: u16| u64::from(sector) | u64::from(strip) << 16;
-        match self.element {
-            Element::Outer(OuterState::Face { sector, strip }) => outer(sector, strip) | FACE << 32,
-            Element::Outer(OuterState::Riser {
-                sector,
-                strip,
-                solid_below: false,
-            }) => outer(sector, strip) | RISER << 32,
-            Element::Outer(OuterState::Riser { sector, strip, .. }) => {
-                outer(sector, strip) | RISER_OF_LOWER << 32
-            }
-            Element::Void(index) => u64::from(index) | VOID << 32,
-            // Fibers that have these have no packets.
-            Element::Outer(OuterState::Smooth)
-            | Element::Outline
-            | Element::Rim(_)
-            | Element::Fusus(_)
-            | Element::Triangle { .. } => u64::MAX,
-        }
-    }
-
-    /// The state of a number.
-    pub(crate) fn of_bits(bits: u64) -> Self {
-        let (sector, strip) = (bits as u16, (bits >> 16) as u16);
-        let riser = |solid_below| {
-            Element::Outer(OuterState::Riser {
-                sector,
-                strip,
-                solid_below,
-            })
-        };
-        Self {
-            element: match bits >> 32 {
-                FACE => Element::Outer(OuterState::Face { sector, strip }),
-                RISER => riser(false),
-                RISER_OF_LOWER => riser(true),
-                _ => Element::Void(bits as u32),
-            },
-        }
     }
 }

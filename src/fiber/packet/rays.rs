@@ -43,6 +43,12 @@ impl UnitRays {
         self.a.lt(simd.all(1e-30))
     }
 
+    /// Those so nearly along the axis that pigment takes another formula.
+    #[inline(always)]
+    pub(super) fn steep(&self, simd: Avx512) -> Mask {
+        self.a.lt(simd.all(1e-12))
+    }
+
     /// Where the rays' lines are inside the circle of radius `r`, and which ever are; see
     /// [`super::super::section::UnitRay::inside_circle`]. Not for axial ones.
     #[inline(always)]

@@ -9,6 +9,13 @@
     reason = "measured several times faster; the processor was asked"
 )]
 
+mod single;
+mod vectors;
+mod whole;
+
+pub(crate) use single::{F32x16, Singles};
+pub(crate) use vectors::Vectors;
+
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
@@ -118,10 +125,22 @@ pub(crate) fn transposed(rows: [F64x8; LANES]) -> [F64x8; LANES] {
     // SAFETY: the processor has AVX-512, since there are F64x8.
     unsafe {
         // Pairs of rows, then of pairs, then of fours.
-        let (p0, p1) = (_mm512_unpacklo_pd(r[0], r[1]), _mm512_unpackhi_pd(r[0], r[1]));
-        let (p2, p3) = (_mm512_unpacklo_pd(r[2], r[3]), _mm512_unpackhi_pd(r[2], r[3]));
-        let (p4, p5) = (_mm512_unpacklo_pd(r[4], r[5]), _mm512_unpackhi_pd(r[4], r[5]));
-        let (p6, p7) = (_mm512_unpacklo_pd(r[6], r[7]), _mm512_unpackhi_pd(r[6], r[7]));
+        let (p0, p1) = (
+            _mm512_unpacklo_pd(r[0], r[1]),
+            _mm512_unpackhi_pd(r[0], r[1]),
+        );
+        let (p2, p3) = (
+            _mm512_unpacklo_pd(r[2], r[3]),
+            _mm512_unpackhi_pd(r[2], r[3]),
+        );
+        let (p4, p5) = (
+            _mm512_unpacklo_pd(r[4], r[5]),
+            _mm512_unpackhi_pd(r[4], r[5]),
+        );
+        let (p6, p7) = (
+            _mm512_unpacklo_pd(r[6], r[7]),
+            _mm512_unpackhi_pd(r[6], r[7]),
+        );
         let ((a04, a26), (a15, a37)) = (parted(p0, p2), parted(p1, p3));
         let ((b04, b26), (b15, b37)) = (parted(p4, p6), parted(p5, p7));
         let ((c0, c4), (c1, c5)) = (parted(a04, b04), parted(a15, b15));
@@ -263,105 +282,6 @@ impl F64x8 {
     }
 }
 
-impl U64x8 {
-    /// All lanes in memory.
-    #[inline(always)]
-    pub(crate) fn array(self) -> [u64; LANES] {
-        self.numbers().row().0.map(f64::to_bits)
-    }
-
-    /// The bits taken for a number.
-    #[inline(always)]
-    pub(crate) fn numbers(self) -> F64x8 {
-        // SAFETY: the processor has AVX-512, since there is a U64x8.
-        F64x8(unsafe { _mm512_castsi512_pd(self.0) })
-    }
-
-    /// As a number with a fraction.
-    #[inline(always)]
-    pub(crate) fn to_f64(self) -> F64x8 {
-        // SAFETY: as above.
-        F64x8(unsafe { _mm512_cvtepu64_pd(self.0) })
-    }
-
-    /// As a number with a fraction; negative ones have the highest bit.
-    #[inline(always)]
-    pub(crate) fn signed_to_f64(self) -> F64x8 {
-        // SAFETY: as above.
-        F64x8(unsafe { _mm512_cvtepi64_pd(self.0) })
-    }
-
-    #[inline(always)]
-    pub(crate) fn right<const BY: u32>(self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_srli_epi64::<BY>(self.0) })
-    }
-
-    #[inline(always)]
-    pub(crate) fn left<const BY: u32>(self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_slli_epi64::<BY>(self.0) })
-    }
-
-    /// The lower 32 bits turned to the right, the upper ones unspecified.
-    #[inline(always)]
-    pub(crate) fn low_turned_right(self, by: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_rorv_epi32(self.0, by.0) })
-    }
-
-    /// The product but for what overflows.
-    #[inline(always)]
-    pub(crate) fn times(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_mullo_epi64(self.0, other.0) })
-    }
-
-    /// The sum but for what overflows.
-    #[inline(always)]
-    pub(crate) fn plus(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_add_epi64(self.0, other.0) })
-    }
-
-    #[inline(always)]
-    pub(crate) fn minus(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_sub_epi64(self.0, other.0) })
-    }
-
-    #[inline(always)]
-    pub(crate) fn and(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_and_si512(self.0, other.0) })
-    }
-
-    #[inline(always)]
-    pub(crate) fn xor(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_xor_si512(self.0, other.0) })
-    }
-
-    #[inline(always)]
-    pub(crate) fn is(self, other: Self) -> Mask {
-        // SAFETY: as above.
-        Mask(unsafe { _mm512_cmpeq_epu64_mask(self.0, other.0) })
-    }
-
-    #[inline(always)]
-    pub(crate) fn lt(self, other: Self) -> Mask {
-        // SAFETY: as above.
-        Mask(unsafe { _mm512_cmplt_epu64_mask(self.0, other.0) })
-    }
-
-    /// This in the lanes of a mask, `other` in the rest.
-    #[inline(always)]
-    pub(crate) fn or(self, mask: Mask, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_mask_blend_epi64(mask.0, other.0, self.0) })
-    }
-}
-
 impl Mask {
     pub(crate) const NONE: Self = Self(0);
     pub(crate) const ALL: Self = Self(0xff);
@@ -391,57 +311,6 @@ impl Mask {
             rest &= rest.wrapping_sub(1);
             (lane < LANES).then_some(lane)
         })
-    }
-}
-
-/// Eight vectors.
-#[derive(Clone, Copy)]
-pub(crate) struct Vectors {
-    pub(crate) x: F64x8,
-    pub(crate) y: F64x8,
-    pub(crate) z: F64x8,
-}
-
-impl Vectors {
-    #[inline(always)]
-    pub(crate) fn new(x: F64x8, y: F64x8, z: F64x8) -> Self {
-        Self { x, y, z }
-    }
-
-    #[inline(always)]
-    pub(crate) fn dot(self, other: Self) -> F64x8 {
-        self.x * other.x + self.y * other.y + self.z * other.z
-    }
-
-    #[inline(always)]
-    pub(crate) fn times(self, by: F64x8) -> Self {
-        Self::new(self.x * by, self.y * by, self.z * by)
-    }
-
-    #[inline(always)]
-    pub(crate) fn plus(self, other: Self) -> Self {
-        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
-    }
-
-    #[inline(always)]
-    pub(crate) fn minus(self, other: Self) -> Self {
-        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
-    }
-
-    /// Of length 1.
-    #[inline(always)]
-    pub(crate) fn normalized(self) -> Self {
-        self.times(1.0 / self.dot(self).sqrt())
-    }
-
-    /// These in the lanes of a mask, `other` in the rest.
-    #[inline(always)]
-    pub(crate) fn or(self, mask: Mask, other: Self) -> Self {
-        Self::new(
-            self.x.or(mask, other.x),
-            self.y.or(mask, other.y),
-            self.z.or(mask, other.z),
-        )
     }
 }
 

@@ -1,0 +1,54 @@
+//! Vectors eight at a time, with the bits of [`glam::DVec3`].
+
+use super::{F64x8, Mask};
+
+/// Eight vectors.
+#[derive(Clone, Copy)]
+pub(crate) struct Vectors {
+    pub(crate) x: F64x8,
+    pub(crate) y: F64x8,
+    pub(crate) z: F64x8,
+}
+
+impl Vectors {
+    #[inline(always)]
+    pub(crate) fn new(x: F64x8, y: F64x8, z: F64x8) -> Self {
+        Self { x, y, z }
+    }
+
+    #[inline(always)]
+    pub(crate) fn dot(self, other: Self) -> F64x8 {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    #[inline(always)]
+    pub(crate) fn times(self, by: F64x8) -> Self {
+        Self::new(self.x * by, self.y * by, self.z * by)
+    }
+
+    #[inline(always)]
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
+    }
+
+    #[inline(always)]
+    pub(crate) fn minus(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
+    }
+
+    /// Of length 1.
+    #[inline(always)]
+    pub(crate) fn normalized(self) -> Self {
+        self.times(1.0 / self.dot(self).sqrt())
+    }
+
+    /// These in the lanes of a mask, `other` in the rest.
+    #[inline(always)]
+    pub(crate) fn or(self, mask: Mask, other: Self) -> Self {
+        Self::new(
+            self.x.or(mask, other.x),
+            self.y.or(mask, other.y),
+            self.z.or(mask, other.z),
+        )
+    }
+}
