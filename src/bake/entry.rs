@@ -62,8 +62,8 @@ pub(super) const ENTRY_TRIES: u32 = 64;
 /// * `max_events`: given up inside after this many events.
 pub fn fly(fiber: &Fiber, photon: &Photon, max_events: u32) -> Flight {
     let mut rng = Rng::new(photon.seed, photon.stream);
-    let entry = Entry::find(fiber, photon, &mut rng);
-    let Some((p, hit)) = entry.met else {
+    let (entry, met) = Entry::find(fiber, photon, &mut rng);
+    let Some((p, hit)) = met else {
         return entry.missed();
     };
     entry.seen(follow(fiber, p, entry.dir, hit, &mut rng, max_events))
@@ -81,11 +81,11 @@ pub fn fly_forked(
     mut book: impl FnMut(u64, Flight),
 ) {
     let mut rng = Rng::new(photon.seed, photon.stream);
-    let entry = Entry::find(fiber, photon, &mut rng);
-    let Some((p, hit)) = entry.met else {
+    let (entry, met) = Entry::find(fiber, photon, &mut rng);
+    let Some((p, hit)) = met else {
         return book(PHOTON, entry.missed());
     };
-    let forked = entry.fork(fiber, &mut rng);
+    let forked = entry.fork(fiber, &hit, &mut rng);
     let mut branch = |part: u64, turn: Option<Turn>| {
         if part > 0 {
             let way = follow_from(fiber, p, entry.dir, hit, turn, &mut rng, max_events);
@@ -111,22 +111,21 @@ pub(super) struct Entry {
     turn: DVec2,
     /// Whether the fiber's mirror image is what the photon stands for.
     mirrored: bool,
-    /// Place and boundary, unless it missed.
-    pub(super) met: Option<(DVec3, Hit)>,
 }
 
 impl Entry {
-    pub(super) fn find(fiber: &Fiber, photon: &Photon, rng: &mut Rng) -> Self {
-        let (mut entry, mut across) = Self::aim(photon, rng);
+    /// A direction, and place and boundary where the fiber is met, unless it is missed.
+    fn find(fiber: &Fiber, photon: &Photon, rng: &mut Rng) -> (Self, Option<(DVec3, Hit)>) {
+        let (entry, mut across) = Self::aim(photon, rng);
         for _ in 0..ENTRY_TRIES {
             let origin = entry.origin(fiber, across, rng);
             if let Some(hit) = fiber.next_hit(origin, entry.dir, Region::Outside, None) {
-                entry.met = Some((origin + hit.t * entry.dir, hit));
-                break;
+                let met = origin + hit.t * entry.dir;
+                return (entry, Some((met, hit)));
             }
             across = 2.0 * rng.uniform() - 1.0;
         }
-        entry
+        (entry, None)
     }
 
     /// A direction, and the first place across the beam, -1..1.
@@ -143,7 +142,6 @@ impl Entry {
             dir: rotate(DVec3::new(-cos, 0.0, -sin), turn),
             turn,
             mirrored,
-            met: None,
         };
         (entry, 2.0 * across - 1.0)
     }
@@ -160,8 +158,7 @@ impl Entry {
 
     /// Both ways at the first boundary, if it is a dielectric one, and the part of the photon, in units of
     /// 2^-32, that is reflected.
-    pub(super) fn fork(&self, fiber: &Fiber, rng: &mut Rng) -> Option<(u64, Fork)> {
-        let (_, hit) = self.met?;
+    fn fork(&self, fiber: &Fiber, hit: &Hit, rng: &mut Rng) -> Option<(u64, Fork)> {
         let ratio = Ratio {
             eta: fiber.eta(Region::Outside, hit.to),
             inverse: fiber.eta(hit.to, Region::Outside),

@@ -2,7 +2,7 @@
 //! bits.
 
 use super::super::microfacet::{Depth, FLAT, MAX_STEPS, STEEP, Slope, TOP};
-use crate::math::lanes::{Avx512, F64x8, Mask, Row, Vectors};
+use crate::math::lanes::{Avx512, F64x8, LANES, Mask, Row, U64x8, Vectors};
 use crate::math::turn::unit_vectors_of;
 use crate::sampling::RngLanes;
 
@@ -14,14 +14,6 @@ pub(super) struct Boundaries {
     /// Far index over near index, and the inverse.
     pub(super) eta: F64x8,
     pub(super) inverse: F64x8,
-}
-
-/// Where they go.
-pub(super) struct Turns {
-    pub(super) dir: Vectors,
-    pub(super) transmitted: Mask,
-    /// Those whose walk does not end.
-    pub(super) lost: Mask,
 }
 
 /// Fresnel decides.
@@ -55,46 +47,133 @@ pub(super) fn smooth(
     (turned, !reflected)
 }
 
-/// Walks on the microsurfaces. See [`super::super::microfacet::walk`].
-#[inline(always)]
-pub(super) fn rough(
-    simd: Avx512,
-    lanes: Mask,
-    dir: Vectors,
-    n: Vectors,
-    boundaries: &Boundaries,
-    rng: &mut RngLanes,
-) -> Turns {
-    let (zero, one) = (simd.all(0.0), simd.all(1.0));
-    let &Boundaries {
-        alpha,
-        eta,
-        inverse,
-    } = boundaries;
-    // The pair of DVec3::any_orthonormal_pair.
-    let sign = one.with_sign_of(n.z);
-    let a = -1.0 / (sign + n.z);
-    let b = n.x * n.y * a;
-    let tangent = Vectors::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    let bitangent = Vectors::new(b, sign + n.y * n.y * a, -n.y);
+/// Eight walks on microsurfaces, each at a facet. See [`super::super::microfacet::walk`].
+pub(super) struct Walks {
+    /// Directions of travel, seen from the surface.
+    d: Vectors,
+    /// Those above the surface.
+    above: Mask,
+    depth: Depths,
+    /// How many facets each has met before.
+    steps: U64x8,
+}
 
-    let mut d = Vectors::new(dir.dot(tangent), dir.dot(bitangent), dir.dot(n));
-    let mut above = Mask::ALL;
-    let mut depth = Depths {
-        top: simd.all(TOP),
-        base: one,
-        across: zero,
-        along: one,
-        flipped: Mask::NONE,
-    };
-    let mut walking = lanes;
-    for _ in 0..MAX_STEPS {
-        let u = rng.uniform(simd, walking);
-        let up = d.or(above, d.times(simd.all(-1.0)));
-        walking = depth.free(simd, walking, up, alpha, u);
-        if !walking.any() {
-            break;
+/// Axes of surfaces.
+pub(super) struct Frames {
+    tangent: Vectors,
+    bitangent: Vectors,
+    normal: Vectors,
+}
+
+impl Frames {
+    /// The pair of `DVec3::any_orthonormal_pair` to a normal.
+    #[inline(always)]
+    pub(super) fn new(simd: Avx512, n: Vectors) -> Self {
+        let sign = simd.all(1.0).with_sign_of(n.z);
+        let a = -1.0 / (sign + n.z);
+        let b = n.x * n.y * a;
+        Self {
+            tangent: Vectors::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+            bitangent: Vectors::new(b, sign + n.y * n.y * a, -n.y),
+            normal: n,
         }
+    }
+}
+
+/// Bits of a walk's last number: above the surface, upside down, and from [`STEPS`] on the facets met.
+const ABOVE: u64 = 1;
+const FLIPPED: u64 = 2;
+const STEPS: u32 = 2;
+
+impl Walks {
+    /// Of rays that come from above, and which of them meet a facet.
+    #[inline(always)]
+    pub(super) fn begin(
+        simd: Avx512,
+        lanes: Mask,
+        dir: Vectors,
+        frames: &Frames,
+        alpha: F64x8,
+        rng: &mut RngLanes,
+    ) -> (Self, Mask) {
+        let (zero, one) = (simd.all(0.0), simd.all(1.0));
+        let &Frames {
+            tangent,
+            bitangent,
+            normal,
+        } = frames;
+        let mut walks = Self {
+            d: Vectors::new(dir.dot(tangent), dir.dot(bitangent), dir.dot(normal)),
+            above: Mask::ALL,
+            depth: Depths {
+                top: simd.all(TOP),
+                base: one,
+                across: zero,
+                along: one,
+                flipped: Mask::NONE,
+            },
+            steps: simd.all_bits(0),
+        };
+        let walking = walks.free(simd, lanes, alpha, rng);
+        (walks, walking)
+    }
+
+    /// Walks that were set aside.
+    #[inline(always)]
+    pub(super) fn resume(simd: Avx512, columns: [F64x8; LANES]) -> Self {
+        let [x, y, z, top, base, across, along, last] = columns;
+        let last = last.bits();
+        let none = simd.all_bits(0);
+        Self {
+            d: Vectors::new(x, y, z),
+            above: !last.and(simd.all_bits(ABOVE)).is(none),
+            depth: Depths {
+                top,
+                base,
+                across,
+                along,
+                flipped: !last.and(simd.all_bits(FLIPPED)).is(none),
+            },
+            steps: last.right::<STEPS>(),
+        }
+    }
+
+    /// To be set aside: what [`Walks::resume`] takes.
+    #[inline(always)]
+    pub(super) fn columns(&self, simd: Avx512) -> [F64x8; LANES] {
+        let none = simd.all_bits(0);
+        let above = simd.all_bits(ABOVE).or(self.above, none);
+        let flipped = simd.all_bits(FLIPPED).or(self.depth.flipped, none);
+        let last = self.steps.left::<STEPS>().plus(above).plus(flipped);
+        let (d, depth) = (self.d, &self.depth);
+        [
+            d.x,
+            d.y,
+            d.z,
+            depth.top,
+            depth.base,
+            depth.across,
+            depth.along,
+            last.numbers(),
+        ]
+    }
+
+    /// What the facets do and which walks meet another. Those that have met the most there may be are lost.
+    #[inline(always)]
+    pub(super) fn step(
+        &mut self,
+        simd: Avx512,
+        walking: Mask,
+        boundaries: &Boundaries,
+        rng: &mut RngLanes,
+    ) -> (Mask, Mask) {
+        let (zero, one) = (simd.all(0.0), simd.all(1.0));
+        let &Boundaries {
+            alpha,
+            eta,
+            inverse,
+        } = boundaries;
+        let (d, above) = (self.d, self.above);
         let side = one.or(above, -one);
         let w = d.times(-side);
         let v = Vectors::new(alpha * w.x, alpha * w.y, w.z).normalized();
@@ -105,19 +184,32 @@ pub(super) fn rough(
         let m = Vectors::new(alpha * h.x, alpha * h.y, h.z.max(simd.all(1e-9))).normalized();
         let ratio = (eta.or(above, inverse), inverse.or(above, eta));
         let (turned, transmitted) = smooth(simd, walking, d, m.times(side), ratio, rng);
-        d = turned.or(walking, d);
+        self.d = turned.or(walking, d);
         let through = transmitted & walking;
-        above = above ^ through;
-        depth.flipped = depth.flipped ^ through;
+        self.above = above ^ through;
+        self.depth.flipped = self.depth.flipped ^ through;
+        self.steps = self.steps.plus(simd.all_bits(1));
+        let lost = walking & !self.steps.lt(simd.all_bits(MAX_STEPS as u64));
+        (self.free(simd, walking & !lost, alpha, rng), lost)
     }
-    let dir = tangent
-        .times(d.x)
-        .plus(bitangent.times(d.y))
-        .plus(n.times(d.z));
-    Turns {
-        dir,
-        transmitted: !above,
-        lost: walking,
+
+    #[inline(always)]
+    fn free(&mut self, simd: Avx512, walking: Mask, alpha: F64x8, rng: &mut RngLanes) -> Mask {
+        let u = rng.uniform(simd, walking);
+        let up = self.d.or(self.above, self.d.times(simd.all(-1.0)));
+        self.depth.free(simd, walking, up, alpha, u)
+    }
+
+    /// Where the walks go, and which went through.
+    #[inline(always)]
+    pub(super) fn leave(&self, frames: &Frames) -> (Vectors, Mask) {
+        let d = self.d;
+        let dir = frames
+            .tangent
+            .times(d.x)
+            .plus(frames.bitangent.times(d.y))
+            .plus(frames.normal.times(d.z));
+        (dir, !self.above)
     }
 }
 

@@ -4,7 +4,7 @@ use super::super::entry::{Entry, Photon};
 use super::super::fork::fork;
 use super::super::microfacet::{Ratio, Turn};
 use super::super::{End, Flight};
-use super::facets::{self, Boundaries};
+use super::facets::{self, Boundaries, Frames, Walks};
 use super::ways::{Group, Lists, Next, UNDER_WAY, Way, after};
 use super::{Packets, SIDES};
 use crate::math::lanes::{F64x8, LANES, Mask, Row, Vectors, transposed};
@@ -50,8 +50,7 @@ impl<'a> Flock<'a> {
             let group = self.lists.take(next);
             match next {
                 Next::Enter => self.enter(&group, forked, book),
-                Next::Rough => self.decide(&group, true, book),
-                Next::Smooth => self.decide(&group, false, book),
+                Next::Rough | Next::Walk | Next::Smooth => self.decide(&group, next, book),
                 Next::Outside | Next::Inward | Next::Outward => self.shell(&group, next, book),
                 Next::Core => self.void(&group, false, book),
                 Next::Void => self.void(&group, true, book),
@@ -69,6 +68,7 @@ impl<'a> Flock<'a> {
         let way = Way {
             line: line(origin, entry.dir, &rng),
             met: Row::default(),
+            walk: Row::default(),
             path_um: 0.0,
             events: 0,
             entry,
@@ -142,37 +142,59 @@ impl<'a> Flock<'a> {
         self.lists.push(next, id);
     }
 
+    /// What boundaries do.
     #[inline(always)]
-    fn decide(&mut self, group: &Group, rough: bool, book: &mut impl FnMut(u64, Flight)) {
+    fn decide(&mut self, group: &Group, kind: Next, book: &mut impl FnMut(u64, Flight)) {
         let simd = self.packets.simd;
         let [x, y, z, dx, dy, dz, state, increment] = self.lines(group);
-        let [nx, ny, nz, side, ..] = simd.columns(group.ids.map(|id| &self.ways[id].met));
-        let (dir, n) = (Vectors::new(dx, dy, dz), Vectors::new(nx, ny, nz));
+        let ways = &self.ways;
+        let [nx, ny, nz, side, ..] = simd.columns(group.ids.map(|id| &ways[id].met));
+        let (old, n) = (Vectors::new(dx, dy, dz), Vectors::new(nx, ny, nz));
         let side = side.bits();
-        let eta = simd.load(&self.packets.eta).pick(side);
-        let inverse = simd.load(&self.packets.inverse).pick(side);
+        let boundaries = Boundaries {
+            alpha: simd.load(&self.packets.alpha).pick(side),
+            eta: simd.load(&self.packets.eta).pick(side),
+            inverse: simd.load(&self.packets.inverse).pick(side),
+        };
         let mut rng = RngLanes {
             state: state.bits(),
             increment: increment.bits(),
         };
-        let (dir, transmitted, lost) = if rough {
-            let boundaries = Boundaries {
-                alpha: simd.load(&self.packets.alpha).pick(side),
-                eta,
-                inverse,
-            };
-            let turns = facets::rough(simd, group.lanes, dir, n, &boundaries, &mut rng);
-            (turns.dir, turns.transmitted, turns.lost)
+        let (mut walking, mut lost) = (Mask::NONE, Mask::NONE);
+        let mut walks = None;
+        let (dir, transmitted) = if kind == Next::Smooth {
+            let ratio = (boundaries.eta, boundaries.inverse);
+            facets::smooth(simd, group.lanes, old, n, ratio, &mut rng)
         } else {
-            let (dir, through) =
-                facets::smooth(simd, group.lanes, dir, n, (eta, inverse), &mut rng);
-            (dir, through, Mask::NONE)
+            let frames = Frames::new(simd, n);
+            let mut all = if kind == Next::Rough {
+                let (all, met) =
+                    Walks::begin(simd, group.lanes, old, &frames, boundaries.alpha, &mut rng);
+                walking = met;
+                all
+            } else {
+                walking = group.lanes;
+                Walks::resume(simd, simd.columns(group.ids.map(|id| &ways[id].walk)))
+            };
+            (walking, lost) = all.step(simd, walking, &boundaries, &mut rng);
+            let (dir, transmitted) = all.leave(&frames);
+            if walking.any() {
+                walks = Some(transposed(all.columns(simd)));
+            }
+            (old.or(walking, dir), transmitted)
         };
         let state = rng.state.numbers();
         self.set_lines(group, [x, y, z, dir.x, dir.y, dir.z, state, increment]);
         for lane in group.lanes.lanes() {
             let id = group.ids[lane];
             let way = &mut self.ways[id];
+            if let Some(walks) = &walks
+                && walking.has(lane)
+            {
+                way.walk = walks[lane].row();
+                self.lists.push(Next::Walk, id);
+                continue;
+            }
             way.events += 1;
             if lost.has(lane) {
                 self.end(id, End::Lost, book);

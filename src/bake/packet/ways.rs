@@ -9,7 +9,7 @@ use crate::sampling::Rng;
 use glam::DVec3;
 
 /// Photons under way. With fewer no list may have eight; with more they leave the nearest cache.
-pub(super) const UNDER_WAY: usize = 64;
+pub(super) const UNDER_WAY: usize = 96;
 
 /// What a photon does next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +18,8 @@ pub(super) enum Next {
     Enter,
     /// A rough boundary.
     Rough,
+    /// Another facet of a rough boundary.
+    Walk,
     /// A smooth boundary.
     Smooth,
     /// Leaves the fiber.
@@ -33,7 +35,7 @@ pub(super) enum Next {
 }
 
 /// How many there are.
-const KINDS: usize = 8;
+const KINDS: usize = 9;
 
 /// The lists in which photons wait, by what they do next.
 pub(super) struct Lists {
@@ -68,6 +70,7 @@ impl Lists {
         const ALL: [Next; KINDS] = [
             Next::Enter,
             Next::Rough,
+            Next::Walk,
             Next::Smooth,
             Next::Outside,
             Next::Inward,
@@ -103,6 +106,8 @@ pub(super) struct Way {
     /// Normal of the boundary that it meets, against it; bits of the side, an index of [`SIDES`]; bits of the
     /// state to go on from.
     pub(super) met: Row,
+    /// The walk on a rough boundary, where it meets several facets.
+    pub(super) walk: Row,
     pub(super) path_um: f64,
     pub(super) events: u32,
     pub(super) entry: Entry,
