@@ -41,13 +41,18 @@ pub(super) fn smooth(
     let reflected = total | chosen;
     let mirrored = dir.minus(n.times(2.0 * along));
     let refracted = dir.times(inverse).plus(n.times(inverse * -along - cos_t));
-    let turned = mirrored.or(reflected, refracted);
-    // See [`crate::math::fresnel::renormalize`].
-    let turned = turned.times(1.5 - 0.5 * turned.dot(turned));
+    let turned = renormalized(mirrored.or(reflected, refracted));
     (turned, !reflected)
 }
 
+/// See [`crate::math::fresnel::renormalize`].
+#[inline(always)]
+fn renormalized(dir: Vectors) -> Vectors {
+    dir.times(1.5 - 0.5 * dir.dot(dir))
+}
+
 /// Eight walks on microsurfaces, each at a facet. See [`super::super::microfacet::walk`].
+#[derive(Clone)]
 pub(super) struct Walks {
     /// Directions of travel, seen from the surface.
     d: Vectors,
@@ -167,30 +172,103 @@ impl Walks {
         boundaries: &Boundaries,
         rng: &mut RngLanes,
     ) -> (Mask, Mask) {
-        let (zero, one) = (simd.all(0.0), simd.all(1.0));
         let &Boundaries {
             alpha,
             eta,
             inverse,
         } = boundaries;
         let (d, above) = (self.d, self.above);
-        let side = one.or(above, -one);
-        let w = d.times(-side);
+        let m = self.normals(simd, walking, alpha, rng);
+        let ratio = (eta.or(above, inverse), inverse.or(above, eta));
+        let (turned, transmitted) = smooth(simd, walking, d, m, ratio, rng);
+        self.turn(simd, walking, turned, transmitted & walking);
+        let lost = walking & !self.steps.lt(simd.all_bits(MAX_STEPS as u64));
+        (self.free(simd, walking & !lost, alpha, rng), lost)
+    }
+
+    /// Normals of the facets, against the walks. See [`super::super::microfacet::visible_normal`].
+    #[inline(always)]
+    fn normals(&self, simd: Avx512, walking: Mask, alpha: F64x8, rng: &mut RngLanes) -> Vectors {
+        let (zero, one) = (simd.all(0.0), simd.all(1.0));
+        let side = one.or(self.above, -one);
+        let w = self.d.times(-side);
         let v = Vectors::new(alpha * w.x, alpha * w.y, w.z).normalized();
         let around = unit_vectors_of(simd, rng.bits(simd, walking));
         let z = (1.0 - rng.uniform(simd, walking)) * (1.0 + v.z) - v.z;
         let r = (1.0 - z * z).max(zero).sqrt();
         let h = Vectors::new(r * around[0], r * around[1], z).plus(v);
         let m = Vectors::new(alpha * h.x, alpha * h.y, h.z.max(simd.all(1e-9))).normalized();
-        let ratio = (eta.or(above, inverse), inverse.or(above, eta));
-        let (turned, transmitted) = smooth(simd, walking, d, m.times(side), ratio, rng);
-        self.d = turned.or(walking, d);
-        let through = transmitted & walking;
-        self.above = above ^ through;
+        m.times(side)
+    }
+
+    /// Goes on as a facet has decided.
+    #[inline(always)]
+    fn turn(&mut self, simd: Avx512, walking: Mask, d: Vectors, through: Mask) {
+        self.d = d.or(walking, self.d);
+        self.above = self.above ^ through;
         self.depth.flipped = self.depth.flipped ^ through;
         self.steps = self.steps.plus(simd.all_bits(1));
-        let lost = walking & !self.steps.lt(simd.all_bits(MAX_STEPS as u64));
-        (self.free(simd, walking & !lost, alpha, rng), lost)
+    }
+
+    /// Both ways at the first facet, the reflected one first, and the share of that; see
+    /// [`super::super::fork::fork`].
+    #[inline(always)]
+    pub(super) fn fork(
+        &self,
+        simd: Avx512,
+        walking: Mask,
+        boundaries: &Boundaries,
+        rng: &mut RngLanes,
+    ) -> ([Self; 2], F64x8) {
+        let (zero, one) = (simd.all(0.0), simd.all(1.0));
+        let &Boundaries {
+            alpha,
+            eta,
+            inverse,
+        } = boundaries;
+        let d = self.d;
+        let m = self.normals(simd, walking, alpha, rng);
+        let along = d.dot(m);
+        let cos_i = (-along).max(zero).min(one);
+        // See [`crate::math::fresnel::dielectric`].
+        let sin2_t = (1.0 - cos_i * cos_i).max(zero) / (eta * eta);
+        let total = sin2_t.ge(one);
+        let cos_t = (1.0 - sin2_t).max(zero).sqrt();
+        let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+        let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+        let share = 0.5 * (parallel * parallel + perpendicular * perpendicular);
+        let share = one.or(total, share);
+        let through = walking & share.lt(one);
+        let mirrored = renormalized(d.minus(m.times(2.0 * along)));
+        let refracted = d.times(inverse).plus(m.times(inverse * -along - cos_t));
+        let (mut back, mut on) = (self.clone(), self.clone());
+        back.turn(simd, walking, mirrored, Mask::NONE);
+        on.turn(
+            simd,
+            walking,
+            renormalized(refracted).or(through, mirrored),
+            through,
+        );
+        ([back, on], share)
+    }
+
+    /// Walks on from where a facet has decided until all have left; those that never do.
+    #[inline(always)]
+    pub(super) fn finish(
+        &mut self,
+        simd: Avx512,
+        lanes: Mask,
+        boundaries: &Boundaries,
+        rng: &mut RngLanes,
+    ) -> Mask {
+        let mut all_lost = Mask::NONE;
+        let mut walking = self.free(simd, lanes, boundaries.alpha, rng);
+        while walking.any() {
+            let lost;
+            (walking, lost) = self.step(simd, walking, boundaries, rng);
+            all_lost = all_lost | lost;
+        }
+        all_lost
     }
 
     #[inline(always)]
@@ -214,6 +292,7 @@ impl Walks {
 }
 
 /// Eight [`Depth`]s.
+#[derive(Clone)]
 struct Depths {
     top: F64x8,
     base: F64x8,

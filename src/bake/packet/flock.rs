@@ -1,12 +1,12 @@
 //! The photons under way, and their steps.
 
 use super::super::entry::{Entry, Photon};
-use super::super::fork::fork;
+use super::super::fork::{Fork, fork};
 use super::super::microfacet::{Ratio, Turn};
 use super::super::{End, Flight};
+use super::Packets;
 use super::facets::{self, Boundaries, Frames, Walks};
 use super::ways::{Group, Lists, Next, UNDER_WAY, Way, after};
-use super::{Packets, SIDES};
 use crate::math::lanes::{F64x8, LANES, Mask, Row, Vectors, transposed};
 use crate::sampling::{Rng, RngLanes};
 use crate::table::PHOTON;
@@ -50,6 +50,7 @@ impl<'a> Flock<'a> {
             let group = self.lists.take(next);
             match next {
                 Next::Enter => self.enter(&group, forked, book),
+                Next::Fork => self.fork(&group),
                 Next::Rough | Next::Walk | Next::Smooth => self.decide(&group, next, book),
                 Next::Outside | Next::Inward | Next::Outward => self.shell(&group, next, book),
                 Next::Core => self.void(&group, false, book),
@@ -98,19 +99,76 @@ impl<'a> Flock<'a> {
         }
         let way = &mut self.ways[id];
         way.first = (way.place(), way.met);
-        let fiber = self.packets.fiber;
-        let (_, near, far) = SIDES[way.side()];
+        if self.packets.alpha.0[way.side()] > 0.0 {
+            self.lists.push(Next::Fork, id);
+        } else {
+            self.fork_alone(id);
+        }
+    }
+
+    /// Both ways at the first boundary, for a photon alone.
+    fn fork_alone(&mut self, id: usize) {
+        let way = &mut self.ways[id];
+        let side = way.side();
         let ratio = Ratio {
-            eta: fiber.eta(near, far),
-            inverse: fiber.eta(far, near),
+            eta: self.packets.eta.0[side],
+            inverse: self.packets.inverse.0[side],
         };
-        let roughness = self.packets.alpha.0[way.side()];
+        let roughness = self.packets.alpha.0[side];
         let mut rng = way.rng();
         let normal = DVec3::from_slice(&way.met.0);
-        let Some(fork) = fork(way.dir(), normal, ratio, roughness, &mut rng) else {
+        let Some(both) = fork(way.dir(), normal, ratio, roughness, &mut rng) else {
             return self.meets(id);
         };
-        way.line = line(way.place(), way.dir(), &rng);
+        self.forks(id, &both, &rng);
+    }
+
+    /// Both ways at the first boundary.
+    #[inline(always)]
+    fn fork(&mut self, group: &Group) {
+        let simd = self.packets.simd;
+        let [_, _, _, dx, dy, dz, state, increment] = self.lines(group);
+        let (n, boundaries) = self.boundaries(group);
+        let mut rng = RngLanes {
+            state: state.bits(),
+            increment: increment.bits(),
+        };
+        let frames = Frames::new(simd, n);
+        let dir = Vectors::new(dx, dy, dz);
+        let alpha = boundaries.alpha;
+        let (walks, met) = Walks::begin(simd, group.lanes, dir, &frames, alpha, &mut rng);
+        let ([mut back, mut on], share) = walks.fork(simd, met, &boundaries, &mut rng);
+        let mut again = rng;
+        let lost = back.finish(simd, met, &boundaries, &mut again)
+            | on.finish(simd, met, &boundaries, &mut rng);
+        let both = [back.leave(&frames), on.leave(&frames)];
+        let [back, on] = both.map(|(d, through)| ([d.x.row(), d.y.row(), d.z.row()], through));
+        let (share, state) = (share.row(), rng.state.array());
+        for lane in group.lanes.lanes() {
+            let id = group.ids[lane];
+            if lost.has(lane) || !met.has(lane) {
+                self.fork_alone(id);
+                continue;
+            }
+            let [reflected, transmitted] = [&back, &on].map(|(dir, through)| Turn {
+                dir: DVec3::from_array([0, 1, 2].map(|k| dir[k].0[lane])),
+                transmitted: through.has(lane),
+            });
+            let both = Fork {
+                reflectance: share.0[lane],
+                reflected,
+                transmitted,
+            };
+            let [_, increment] = self.ways[id].rng().parts();
+            self.forks(id, &both, &Rng::of_parts([state[lane], increment]));
+        }
+    }
+
+    /// Flies one branch and keeps the other for later.
+    #[inline(always)]
+    fn forks(&mut self, id: usize, fork: &Fork, rng: &Rng) {
+        let way = &mut self.ways[id];
+        way.line = line(way.place(), way.dir(), rng);
         let part = fork.part();
         let branches = [(part, fork.reflected), (PHOTON - part, fork.transmitted)];
         let mut branches = branches.into_iter().filter(|&(part, _)| part > 0);
@@ -147,15 +205,8 @@ impl<'a> Flock<'a> {
     fn decide(&mut self, group: &Group, kind: Next, book: &mut impl FnMut(u64, Flight)) {
         let simd = self.packets.simd;
         let [x, y, z, dx, dy, dz, state, increment] = self.lines(group);
-        let ways = &self.ways;
-        let [nx, ny, nz, side, ..] = simd.columns(group.ids.map(|id| &ways[id].met));
-        let (old, n) = (Vectors::new(dx, dy, dz), Vectors::new(nx, ny, nz));
-        let side = side.bits();
-        let boundaries = Boundaries {
-            alpha: simd.load(&self.packets.alpha).pick(side),
-            eta: simd.load(&self.packets.eta).pick(side),
-            inverse: simd.load(&self.packets.inverse).pick(side),
-        };
+        let (n, boundaries) = self.boundaries(group);
+        let old = Vectors::new(dx, dy, dz);
         let mut rng = RngLanes {
             state: state.bits(),
             increment: increment.bits(),
@@ -174,6 +225,7 @@ impl<'a> Flock<'a> {
                 all
             } else {
                 walking = group.lanes;
+                let ways = &self.ways;
                 Walks::resume(simd, simd.columns(group.ids.map(|id| &ways[id].walk)))
             };
             (walking, lost) = all.step(simd, walking, &boundaries, &mut rng);
@@ -203,6 +255,27 @@ impl<'a> Flock<'a> {
             let next = after(way.side(), transmitted.has(lane));
             self.lists.push(next, id);
         }
+    }
+
+    /// What a group meets: normals and boundaries.
+    #[inline(always)]
+    fn boundaries(&self, group: &Group) -> (Vectors, Boundaries) {
+        let Packets {
+            simd,
+            alpha,
+            eta,
+            inverse,
+            ..
+        } = self.packets;
+        let ways = &self.ways;
+        let [x, y, z, side, ..] = simd.columns(group.ids.map(|id| &ways[id].met));
+        let side = side.bits();
+        let boundaries = Boundaries {
+            alpha: simd.load(alpha).pick(side),
+            eta: simd.load(eta).pick(side),
+            inverse: simd.load(inverse).pick(side),
+        };
+        (Vectors::new(x, y, z), boundaries)
     }
 
     #[inline(always)]

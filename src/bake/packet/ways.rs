@@ -16,6 +16,8 @@ pub(super) const UNDER_WAY: usize = 96;
 pub(super) enum Next {
     /// Comes to the fiber from far away.
     Enter,
+    /// Both ways at its first boundary, a rough one.
+    Fork,
     /// A rough boundary.
     Rough,
     /// Another facet of a rough boundary.
@@ -35,7 +37,7 @@ pub(super) enum Next {
 }
 
 /// How many there are.
-const KINDS: usize = 9;
+const KINDS: usize = 10;
 
 /// The lists in which photons wait, by what they do next.
 pub(super) struct Lists {
@@ -69,6 +71,7 @@ impl Lists {
     pub(super) fn longest(&self) -> Option<Next> {
         const ALL: [Next; KINDS] = [
             Next::Enter,
+            Next::Fork,
             Next::Rough,
             Next::Walk,
             Next::Smooth,
