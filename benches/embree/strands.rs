@@ -52,7 +52,10 @@ fn main() -> Result<(), Failure> {
         println!("benches/embree/run.sh strands compiles the Embree side and runs this with it");
         return Ok(());
     };
-    let strands = args.iter().find_map(|a| a.parse().ok()).unwrap_or(100_000);
+    // A number of its own, not an option's.
+    let is_own = |i: usize| i == 0 || !args[i - 1].starts_with("--");
+    let mut own = (0..args.len()).filter(|&i| is_own(i));
+    let strands = own.find_map(|i| args[i].parse().ok()).unwrap_or(100_000);
     let species = option("--species").unwrap_or_else(|| "red-fox".into());
     let rounds = option("--rounds").map_or(Ok(5), |n| n.parse())?;
 

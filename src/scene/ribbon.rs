@@ -5,7 +5,7 @@
 //! away, so nothing but the distance between ray and axis matters; a round tube would ask for a
 //! quadratic and give the same picture.
 
-use super::tree::Lanes;
+use super::tree::Numbers;
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
 /// Two ends of a segment, scene units (millimeters): xyz the axis, w half the width.
@@ -38,61 +38,92 @@ impl Segment {
     }
 }
 
-/// Eight segments, lane by lane: x, y and z of both ends, and half widths.
-pub(super) struct Eight<L: Lanes> {
-    pub(super) root: ([L::F; 3], L::F),
-    pub(super) tip: ([L::F; 3], L::F),
+/// Axes seen along a ray: two across it and its own.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Across {
+    /// Columns: from the scene to them.
+    columns: [Vec4; 3],
 }
 
-impl<L: Lanes> Eight<L> {
-    /// Which of them a ray meets ahead of its start and up to `limit`, a bit each, and where: to the bit what
-    /// [`Segment::intersect`] says.
+impl Across {
+    /// * `dir`: unit length.
     #[inline(always)]
-    pub(super) fn intersect(&self, origin: Vec3, dir: Vec3, limit: f32) -> (u32, L::F) {
-        let (root, tip) = (&self.root, &self.tip);
-        let dir = [L::splat(dir.x), L::splat(dir.y), L::splat(dir.z)];
-        let origin = [L::splat(origin.x), L::splat(origin.y), L::splat(origin.z)];
-        let to_root = minus::<L>(&root.0, &origin);
-        let axis = minus::<L>(&tip.0, &root.0);
-        let (depth, slope) = (dot::<L>(&to_root, &dir), dot::<L>(&axis, &dir));
-        let flat_root = minus::<L>(&to_root, &times::<L>(depth, &dir));
-        let flat_axis = minus::<L>(&axis, &times::<L>(slope, &dir));
-        let least = L::splat(f32::MIN_POSITIVE);
-        let against = L::sub(L::splat(0.0), dot::<L>(&flat_root, &flat_axis));
-        let along = L::div(against, L::max(dot::<L>(&flat_axis, &flat_axis), least));
-        let along = L::min(L::max(along, L::splat(0.0)), L::splat(1.0));
-        let radius = L::add(root.1, L::mul(along, L::sub(tip.1, root.1)));
-        let off = plus::<L>(&flat_root, &times::<L>(along, &flat_axis));
-        let t = L::add(depth, L::mul(along, slope));
-        let near = L::le(dot::<L>(&off, &off), L::mul(radius, radius));
-        (
-            near & L::le(t, L::splat(limit)) & !L::le(t, L::splat(0.0)),
-            t,
-        )
+    pub(super) fn new(dir: Vec3) -> Self {
+        let (u, v) = dir.any_orthonormal_pair();
+        let column = |axis: usize| Vec4::new(u[axis], v[axis], dir[axis], 0.0);
+        Self {
+            columns: [column(0), column(1), column(2)],
+        }
+    }
+
+    /// Points along the axes, as seen from another.
+    #[inline(always)]
+    pub(super) fn see<N: Numbers>(&self, points: &[N; 3], from: Vec4) -> Seen<N> {
+        let [x, y, z] = self.columns;
+        let from = x * from.x + y * from.y + z * from.z;
+        Seen {
+            across: [self.axis(0, points, from), self.axis(1, points, from)],
+            depth: self.axis(2, points, from),
+        }
+    }
+
+    #[inline(always)]
+    fn axis<N: Numbers>(&self, axis: usize, points: &[N; 3], from: Vec4) -> N {
+        let [x, y, z] = &self.columns;
+        let xy = (points[0].mul(N::splat(x[axis]))).add(points[1].mul(N::splat(y[axis])));
+        let all = xy.add(points[2].mul(N::splat(z[axis])));
+        all.sub(N::splat(from[axis]))
     }
 }
 
-// Functions rather than closures, which would not be compiled for the processor that their caller is for.
-
-#[inline(always)]
-fn dot<L: Lanes>(a: &[L::F; 3], b: &[L::F; 3]) -> L::F {
-    let xy = L::add(L::mul(a[0], b[0]), L::mul(a[1], b[1]));
-    L::add(xy, L::mul(a[2], b[2]))
+/// Points as seen along a ray: across it, and how far along it they are.
+#[derive(Clone, Copy)]
+pub(super) struct Seen<N> {
+    pub(super) across: [N; 2],
+    pub(super) depth: N,
 }
 
-#[inline(always)]
-fn plus<L: Lanes>(a: &[L::F; 3], b: &[L::F; 3]) -> [L::F; 3] {
-    [L::add(a[0], b[0]), L::add(a[1], b[1]), L::add(a[2], b[2])]
+/// Segments side by side as seen along a ray.
+pub(super) struct Segments<N> {
+    pub(super) root: Seen<N>,
+    pub(super) tip: Seen<N>,
+    /// Half widths.
+    pub(super) widths: [N; 2],
 }
 
-#[inline(always)]
-fn minus<L: Lanes>(a: &[L::F; 3], b: &[L::F; 3]) -> [L::F; 3] {
-    [L::sub(a[0], b[0]), L::sub(a[1], b[1]), L::sub(a[2], b[2])]
+/// Where a ray meets segments side by side, if it does.
+pub(super) struct Meeting<N> {
+    /// Whether it does, ahead or behind, a bit each.
+    pub(super) is: u32,
+    /// Along the ray.
+    pub(super) depth: N,
+    /// Along the segment, 0 root .. 1 tip.
+    pub(super) along: N,
 }
 
-#[inline(always)]
-fn times<L: Lanes>(t: L::F, b: &[L::F; 3]) -> [L::F; 3] {
-    [L::mul(t, b[0]), L::mul(t, b[1]), L::mul(t, b[2])]
+impl<N: Numbers> Segments<N> {
+    /// As [`Segment::intersect`] but for rounding.
+    ///
+    /// * `unit`: of the half widths, in that of the other lengths.
+    #[inline(always)]
+    pub(super) fn meet(&self, unit: f32) -> Meeting<N> {
+        let (root, tip) = (&self.root, &self.tip);
+        let [x, y] = root.across;
+        let (dx, dy) = (tip.across[0].sub(x), tip.across[1].sub(y));
+        let length2 = dx.mul(dx).add(dy.mul(dy));
+        let (zero, one) = (N::splat(0.0), N::splat(1.0));
+        let against = zero.sub(x.mul(dx).add(y.mul(dy)));
+        let along = against.div(length2.max(N::splat(f32::MIN_POSITIVE)));
+        let along = along.max(zero).min(one);
+        let (x, y) = (x.add(along.mul(dx)), y.add(along.mul(dy)));
+        let [from, to] = self.widths;
+        let radius = from.add(along.mul(to.sub(from))).mul(N::splat(unit));
+        Meeting {
+            is: x.mul(x).add(y.mul(y)).le(radius.mul(radius)),
+            depth: root.depth.add(along.mul(tip.depth.sub(root.depth))),
+            along,
+        }
+    }
 }
 
 #[cfg(test)]

@@ -229,6 +229,11 @@ impl Strands {
         self.tree.segment(&hit.found)
     }
 
+    /// Where along the segment it was met, 0 root .. 1 tip.
+    pub fn along(&self, hit: &StrandHit) -> f32 {
+        hit.found.along
+    }
+
     /// Where among [`Strands::joints`] the segment begins that was met.
     pub fn joint_of(&self, hit: &StrandHit) -> usize {
         self.joint_index(&hit.found, hit.strand)
@@ -257,7 +262,7 @@ impl Strands {
         // What is said of the run is on its way while the search goes on.
         let fetch = |run| self.courses.fetch(run as usize);
         let found = self.tree.closest(ray, limit, leaving.map(|l| l.0), fetch)?;
-        self.describe(&found, ray)
+        Some(self.describe(&found))
     }
 
     /// Whether any strand lies in front of `limit`.
@@ -265,9 +270,9 @@ impl Strands {
         self.tree.any(ray, limit, leaving.map(|l| l.0))
     }
 
-    fn describe(&self, found: &Found, ray: &Ray) -> Option<StrandHit> {
+    fn describe(&self, found: &Found) -> StrandHit {
         let course = &self.courses[found.run as usize];
-        let (_, along) = self.tree.segment(found).intersect(ray.origin, ray.dir)?;
+        let along = found.along;
         let half = found.half as usize;
         let [from, to] = [half, half + 1].map(|k| f32::from(course.at[k]) / AT_STEPS);
         let at = from + along * (to - from);
@@ -287,7 +292,7 @@ impl Strands {
                 tangent,
             )
         };
-        Some(StrandHit {
+        StrandHit {
             t: found.t,
             found: *found,
             strand,
@@ -297,7 +302,7 @@ impl Strands {
             tip_mm: (1.0 - at) * self.length_mm[strand as usize],
             tangent,
             side,
-        })
+        }
     }
 
     /// The start of a ray that leaves a strand along unit `dir`.

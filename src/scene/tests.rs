@@ -83,7 +83,9 @@ fn the_tree_finds_what_a_search_of_all_segments_finds() {
         assert_eq!(strands.occluded(&ray, f32::INFINITY, None), best.is_some());
         match (found, best) {
             (Some(hit), Some((t, j))) => {
-                assert_eq!((hit.t, strands.joint_of(&hit)), (t, j));
+                // Rounded otherwise: along the ray, not in the scene.
+                assert!((hit.t - t).abs() < 1e-4, "{} for {t}", hit.t);
+                assert_eq!(strands.joint_of(&hit), j);
                 assert!((0.0..=1.0).contains(&hit.at) && hit.tip_mm >= 0.0);
                 assert!((hit.tangent.length() - 1.0).abs() < 1e-5);
                 assert!(!strands.occluded(&ray, 0.999 * t, None));

@@ -29,8 +29,8 @@ pub(super) struct Draft {
     pub(super) leaves: Table<Leaf>,
 }
 
-/// * `numbers`: of the runs that are in the tree.
-pub(super) fn build(joints: &[Vec4], runs: &[Run], numbers: Vec<u32>) -> Draft {
+/// * `numbers`: of the runs that are in the tree. * `blur`: as [`Node::new`].
+pub(super) fn build(joints: &[Vec4], runs: &[Run], numbers: Vec<u32>, blur: f32) -> Draft {
     if numbers.is_empty() {
         return Draft {
             nodes: Table::default(),
@@ -56,17 +56,20 @@ pub(super) fn build(joints: &[Vec4], runs: &[Run], numbers: Vec<u32>) -> Draft {
                 }
                 None => {
                     let (from, to) = (part.begin, part.begin + part.count);
-                    leaves.extend((from..to).step_by(RUNS).map(|l| (l, to.min(l + RUNS))));
+                    leaves.extend((from..to).step_by(RUNS).map(|l| (l, to)));
                 }
             }
         }
         let children: Vec<Child> = branch.parts.iter().map(|part| part.child).collect();
-        nodes[number] = Some(Node::new(&branch.axes, &children, first));
+        nodes[number] = Some(Node::new(&branch.axes, &children, first, blur));
     }
     let nodes = Table::new(nodes.into_iter().flatten().collect());
     drop(root);
     pages::give_back();
-    let leaf = |(from, to): (usize, usize)| Leaf::new(joints, runs, &numbers[from..to]);
+    let leaf = |(from, to): (usize, usize)| {
+        let end = to.min(from + RUNS);
+        Leaf::new(joints, runs, &numbers[from..end], end < to)
+    };
     Draft {
         nodes,
         leaves: Table::collect(&leaf(leaves[0]), leaves.par_iter().map(|&l| leaf(l))),

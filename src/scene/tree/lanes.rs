@@ -1,173 +1,259 @@
-//! Eight numbers at a time.
+//! Eight and sixteen numbers at a time.
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+
+#[cfg(target_arch = "x86_64")]
+pub(super) use {avx2::Avx2, avx512::Avx512};
+
+use super::node::{CHILDREN, Children};
 use glam::Vec4;
 
-/// Eight numbers in single precision. Every operation rounds as it does on one number, so that results are the same to the
-/// bit whatever does it.
-pub(in crate::scene) trait Lanes {
-    /// Eight numbers.
-    type F: Copy;
-    fn splat(x: f32) -> Self::F;
-    fn bytes(x: &[u8; 8]) -> Self::F;
-    fn words(x: &[u16; 8]) -> Self::F;
-    fn add(a: Self::F, b: Self::F) -> Self::F;
-    fn sub(a: Self::F, b: Self::F) -> Self::F;
-    fn mul(a: Self::F, b: Self::F) -> Self::F;
-    fn div(a: Self::F, b: Self::F) -> Self::F;
-    /// `a * b + c`, rounded once or twice: the exception, for what need not be the same to the bit.
-    fn mul_add(a: Self::F, b: Self::F, c: Self::F) -> Self::F;
-    fn min(a: Self::F, b: Self::F) -> Self::F;
-    fn max(a: Self::F, b: Self::F) -> Self::F;
-    /// Where `a <= b`, a bit each.
-    fn le(a: Self::F, b: Self::F) -> u32;
-    fn array(a: Self::F) -> [f32; 8];
+/// Numbers in single precision, side by side. Every operation rounds as it does on one number, so that results are the
+/// same to the bit whatever does it.
+pub(in crate::scene) trait Numbers: Copy {
+    /// How many.
+    const COUNT: u32;
+    fn splat(x: f32) -> Self;
+    fn add(self, other: Self) -> Self;
+    fn sub(self, other: Self) -> Self;
+    fn mul(self, other: Self) -> Self;
+    fn div(self, other: Self) -> Self;
+    /// `self * b + c`, rounded once or twice: the exception, for what need not be the same to the bit.
+    fn mul_add(self, b: Self, c: Self) -> Self;
+    fn min(self, other: Self) -> Self;
+    fn max(self, other: Self) -> Self;
+    /// Where `self <= other`, a bit each.
+    fn le(self, other: Self) -> u32;
+}
+
+/// What a processor does with them.
+pub(super) trait Lanes {
+    type Eight: Numbers;
+    type Sixteen: Numbers;
+    fn bytes(x: &[u8; CHILDREN]) -> Self::Sixteen;
+    /// The last four are any.
+    fn words(x: &[u16; 12]) -> Self::Sixteen;
+    /// The first eight.
+    fn head(x: Self::Sixteen) -> Self::Eight;
+    /// Eight, of which four come after those of [`Lanes::head`].
+    fn tail(x: Self::Sixteen) -> Self::Eight;
+    fn eight(x: Self::Eight) -> [f32; 8];
+    fn sixteen(x: Self::Sixteen) -> [f32; CHILDREN];
+
+    /// `columns` times `v`, rounded as [`Numbers::mul_add`] is.
+    #[inline(always)]
+    fn turn(columns: &[Vec4; 3], v: Vec4) -> Vec4 {
+        columns[0] * v.x + columns[1] * v.y + columns[2] * v.z
+    }
+
+    /// Puts the chosen of a node's children in a row, the nearest last, and says how many.
+    ///
+    /// * `begins`: where the ray enters their boxes, not negative.
+    #[inline(always)]
+    fn line_up(
+        chosen: u16,
+        begins: Self::Sixteen,
+        children: Children<'_>,
+        row: &mut [Aside; CHILDREN],
+    ) -> usize {
+        line_up(chosen, &Self::sixteen(begins), children, row)
+    }
+}
+
+/// Something to look at later: how far away it is, as bits, which order as the distances do, and what it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(transparent)]
+pub(super) struct Aside(u64);
+
+impl Aside {
+    pub(super) const NONE: Self = Self(0);
+
+    #[inline(always)]
+    fn new(distance: f32, number: u32) -> Self {
+        Self(u64::from(distance.to_bits()) << 32 | u64::from(number))
+    }
+
+    #[inline(always)]
+    pub(super) fn distance(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+
+    #[inline(always)]
+    pub(super) fn number(self) -> usize {
+        self.0 as u32 as usize
+    }
+}
+
+/// [`Lanes::line_up`] for any number of children on any processor.
+fn line_up(
+    mut chosen: u16,
+    begins: &[f32; CHILDREN],
+    children: Children<'_>,
+    row: &mut [Aside; CHILDREN],
+) -> usize {
+    let mut count = 0;
+    while chosen != 0 {
+        let k = chosen.trailing_zeros() as usize;
+        chosen &= chosen - 1;
+        let other = Aside::new(begins[k], children.first + u32::from(children.places[k]));
+        let mut at = count;
+        while at > 0 && row[at - 1] < other {
+            row[at] = row[at - 1];
+            at -= 1;
+        }
+        row[at] = other;
+        count += 1;
+    }
+    count
 }
 
 /// For every processor.
-pub(in crate::scene) struct Plain;
+pub(super) struct Plain;
 
-impl Lanes for Plain {
-    type F = [Vec4; 2];
+impl Numbers for Vec4 {
+    const COUNT: u32 = 4;
 
     #[inline(always)]
-    fn splat(x: f32) -> Self::F {
-        [Vec4::splat(x); 2]
+    fn splat(x: f32) -> Self {
+        Self::splat(x)
     }
 
     #[inline(always)]
-    fn bytes(x: &[u8; 8]) -> Self::F {
-        let f = x.map(f32::from);
-        [
-            Vec4::new(f[0], f[1], f[2], f[3]),
-            Vec4::new(f[4], f[5], f[6], f[7]),
-        ]
+    fn add(self, other: Self) -> Self {
+        self + other
     }
 
     #[inline(always)]
-    fn words(x: &[u16; 8]) -> Self::F {
-        let f = x.map(f32::from);
-        [
-            Vec4::new(f[0], f[1], f[2], f[3]),
-            Vec4::new(f[4], f[5], f[6], f[7]),
-        ]
+    fn sub(self, other: Self) -> Self {
+        self - other
     }
 
     #[inline(always)]
-    fn add(a: Self::F, b: Self::F) -> Self::F {
-        [a[0] + b[0], a[1] + b[1]]
+    fn mul(self, other: Self) -> Self {
+        self * other
     }
 
     #[inline(always)]
-    fn sub(a: Self::F, b: Self::F) -> Self::F {
-        [a[0] - b[0], a[1] - b[1]]
+    fn div(self, other: Self) -> Self {
+        self / other
     }
 
     #[inline(always)]
-    fn mul(a: Self::F, b: Self::F) -> Self::F {
-        [a[0] * b[0], a[1] * b[1]]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self * b + c
     }
 
     #[inline(always)]
-    fn div(a: Self::F, b: Self::F) -> Self::F {
-        [a[0] / b[0], a[1] / b[1]]
+    fn min(self, other: Self) -> Self {
+        Self::min(self, other)
     }
 
     #[inline(always)]
-    fn mul_add(a: Self::F, b: Self::F, c: Self::F) -> Self::F {
-        Self::add(Self::mul(a, b), c)
+    fn max(self, other: Self) -> Self {
+        Self::max(self, other)
     }
 
     #[inline(always)]
-    fn min(a: Self::F, b: Self::F) -> Self::F {
-        [a[0].min(b[0]), a[1].min(b[1])]
-    }
-
-    #[inline(always)]
-    fn max(a: Self::F, b: Self::F) -> Self::F {
-        [a[0].max(b[0]), a[1].max(b[1])]
-    }
-
-    #[inline(always)]
-    fn le(a: Self::F, b: Self::F) -> u32 {
-        a[0].cmple(b[0]).bitmask() | a[1].cmple(b[1]).bitmask() << 4
-    }
-
-    #[inline(always)]
-    fn array(a: Self::F) -> [f32; 8] {
-        let ([a, b, c, d], [e, f, g, h]) = (a[0].to_array(), a[1].to_array());
-        [a, b, c, d, e, f, g, h]
+    fn le(self, other: Self) -> u32 {
+        self.cmple(other).bitmask()
     }
 }
 
-/// For processors with AVX2 and FMA. To be used within functions that enable it only, without closures between, which would
-/// not be compiled for it.
-#[cfg(target_arch = "x86_64")]
-pub(in crate::scene) struct Avx2;
+/// Twice as many.
+impl<N: Numbers> Numbers for [N; 2] {
+    const COUNT: u32 = 2 * N::COUNT;
 
-#[cfg(target_arch = "x86_64")]
-#[allow(
-    unsafe_code,
-    reason = "measured faster; whoever calls has asked the processor whether it has AVX2, and the pointers are of \
-              arrays as long as what is read"
-)]
-mod avx2 {
-    use super::{Avx2, Lanes};
-    use std::arch::x86_64::*;
-
-    macro_rules! both {
-        ($name:ident, $intrinsic:ident) => {
-            #[inline(always)]
-            fn $name(a: __m256, b: __m256) -> __m256 {
-                unsafe { $intrinsic(a, b) }
-            }
-        };
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        [N::splat(x); 2]
     }
 
-    impl Lanes for Avx2 {
-        type F = __m256;
-        both!(add, _mm256_add_ps);
-        both!(sub, _mm256_sub_ps);
-        both!(mul, _mm256_mul_ps);
-        both!(div, _mm256_div_ps);
-        both!(min, _mm256_min_ps);
-        both!(max, _mm256_max_ps);
-
-        #[inline(always)]
-        fn mul_add(a: __m256, b: __m256, c: __m256) -> __m256 {
-            unsafe { _mm256_fmadd_ps(a, b, c) }
-        }
-
-        #[inline(always)]
-        fn splat(x: f32) -> __m256 {
-            unsafe { _mm256_set1_ps(x) }
-        }
-
-        #[inline(always)]
-        fn bytes(x: &[u8; 8]) -> __m256 {
-            unsafe {
-                let x = _mm_loadl_epi64(x.as_ptr().cast());
-                _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(x))
-            }
-        }
-
-        #[inline(always)]
-        fn words(x: &[u16; 8]) -> __m256 {
-            unsafe {
-                let x = _mm_loadu_si128(x.as_ptr().cast());
-                _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(x))
-            }
-        }
-
-        #[inline(always)]
-        fn le(a: __m256, b: __m256) -> u32 {
-            unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32 }
-        }
-
-        #[inline(always)]
-        fn array(a: __m256) -> [f32; 8] {
-            let mut all = [0.0; 8];
-            unsafe { _mm256_storeu_ps(all.as_mut_ptr(), a) };
-            all
-        }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        [self[0].add(other[0]), self[1].add(other[1])]
     }
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        [self[0].sub(other[0]), self[1].sub(other[1])]
+    }
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        [self[0].mul(other[0]), self[1].mul(other[1])]
+    }
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        [self[0].div(other[0]), self[1].div(other[1])]
+    }
+
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        [self[0].mul_add(b[0], c[0]), self[1].mul_add(b[1], c[1])]
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        [self[0].min(other[0]), self[1].min(other[1])]
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        [self[0].max(other[0]), self[1].max(other[1])]
+    }
+
+    #[inline(always)]
+    fn le(self, other: Self) -> u32 {
+        self[0].le(other[0]) | self[1].le(other[1]) << N::COUNT
+    }
+}
+
+impl Lanes for Plain {
+    type Eight = [Vec4; 2];
+    type Sixteen = [[Vec4; 2]; 2];
+
+    #[inline(always)]
+    fn bytes(x: &[u8; CHILDREN]) -> Self::Sixteen {
+        let four = |k: usize| Vec4::from_array(std::array::from_fn(|i| f32::from(x[k + i])));
+        [[four(0), four(4)], [four(8), four(12)]]
+    }
+
+    #[inline(always)]
+    fn words(x: &[u16; 12]) -> Self::Sixteen {
+        let four = |k: usize| Vec4::from_array(std::array::from_fn(|i| f32::from(x[k + i])));
+        [[four(0), four(4)], [four(8), Vec4::ZERO]]
+    }
+
+    #[inline(always)]
+    fn head(x: Self::Sixteen) -> Self::Eight {
+        x[0]
+    }
+
+    #[inline(always)]
+    fn tail(x: Self::Sixteen) -> Self::Eight {
+        [x[0][1], x[1][0]]
+    }
+
+    #[inline(always)]
+    fn eight(x: Self::Eight) -> [f32; 8] {
+        let [[a, b, c, d], [e, f, g, h]] = x.map(|four| four.to_array());
+        [a, b, c, d, e, f, g, h]
+    }
+
+    #[inline(always)]
+    fn sixteen(x: Self::Sixteen) -> [f32; CHILDREN] {
+        both(x.map(Self::eight))
+    }
+}
+
+#[inline(always)]
+fn both(x: [[f32; 8]; 2]) -> [f32; CHILDREN] {
+    let mut all = [0.0; CHILDREN];
+    all[..8].copy_from_slice(&x[0]);
+    all[8..].copy_from_slice(&x[1]);
+    all
 }

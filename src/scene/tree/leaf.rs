@@ -1,13 +1,16 @@
 //! Four runs of two segments.
 
-use super::super::ribbon::Eight;
+use super::super::ribbon::{Seen, Segments};
 use super::Run;
-use super::lanes::Lanes;
-use super::node::Line;
+use super::lanes::{Lanes, Numbers};
+use super::line::Line;
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
 /// Runs of a leaf at most.
 pub(super) const RUNS: usize = 4;
+
+/// Whether the next leaf belongs to the same child of a node.
+const FOLLOWED: u8 = 1 << 7;
 
 /// Joints counted in steps from a corner, in two lines of a cache. The joints of a run are `k`, `k + 4` and `k + 8`,
 /// so that its segments are lanes `k` and `k + 4` and all lanes end four joints after they begin.
@@ -21,18 +24,19 @@ pub(super) struct Leaf {
     step: [i8; 2],
     /// Which lanes there are, a bit each.
     used: u8,
-    /// Runs with which their strands end, a bit each.
+    /// Runs with which their strands end, a bit each, and [`FOLLOWED`].
     last: u8,
     /// Number of each run.
     runs: [u32; RUNS],
 }
 
 impl Leaf {
-    /// * `joints`: of the scene. * `numbers`: of one to four runs.
-    pub(super) fn new(joints: &[Vec4], runs: &[Run], numbers: &[u32]) -> Self {
+    /// * `joints`: of the scene. * `numbers`: of one to four runs. * `is_followed`: by a leaf of the same child of
+    ///   a node.
+    pub(super) fn new(joints: &[Vec4], runs: &[Run], numbers: &[u32], is_followed: bool) -> Self {
         let number = |k: usize| numbers[k.min(numbers.len() - 1)];
         let mut all = [Vec4::ZERO; 12];
-        let (mut used, mut last) = (0, 0);
+        let (mut used, mut last) = (0, u8::from(is_followed) * FOLLOWED);
         for k in 0..RUNS {
             let run = runs[number(k) as usize];
             for i in 0..3 {
@@ -49,11 +53,13 @@ impl Leaf {
             let least = (size.max(1e-30) / 65_000.0).log2().ceil();
             least.clamp(-100.0, 100.0) as i8
         };
-        let place = exponent((hi - lo).xyz().max_element());
+        let width = exponent(hi.w);
+        // Not so fine beside the widths that their squares could be too large.
+        let place = exponent((hi - lo).xyz().max_element()).max(width - 4);
         let mut leaf = Self {
             joints: [[0; 12]; 4],
             corner: lo.xyz(),
-            step: [place, exponent(hi.w)],
+            step: [place, width],
             used,
             last,
             runs: std::array::from_fn(number),
@@ -71,8 +77,7 @@ impl Leaf {
 
     #[inline(always)]
     fn steps(&self) -> [f32; 2] {
-        self.step
-            .map(|e| f32::from_bits(((i32::from(e) + 127) as u32) << 23))
+        self.step.map(|e| power(e.into()))
     }
 
     /// Joint `0..=2` of a run `0..4`.
@@ -91,10 +96,15 @@ impl Leaf {
         })
     }
 
+    #[inline(always)]
+    pub(super) fn is_followed(&self) -> bool {
+        self.last & FOLLOWED != 0
+    }
+
     /// Number of the run of a lane.
     #[inline(always)]
-    pub(super) fn run(&self, lane: u32) -> u32 {
-        self.runs[lane as usize % 4]
+    pub(super) fn run(&self, lane: usize) -> u32 {
+        self.runs[lane % RUNS]
     }
 
     /// The runs that are there, with their place in the leaf.
@@ -104,38 +114,40 @@ impl Leaf {
             .map(|k| (k, self.runs[k]))
     }
 
-    /// Which segments a ray meets up to `limit`, a bit each, and where.
+    /// Which segments a ray meets ahead of its start and up to `limit`, a bit each, how far along it, and where along the
+    /// segments.
     #[inline(always)]
-    pub(super) fn meets<L: Lanes>(&self, ray: &Line, limit: f32) -> (u32, L::F) {
-        let (root, tip) = (self.ends::<L>(0), self.ends::<L>(4));
-        let (hit, t) = Eight::<L> { root, tip }.intersect(ray.origin, ray.dir, limit);
-        (hit & u32::from(self.used), t)
-    }
-
-    /// Eight joints from one on.
-    #[inline(always)]
-    fn ends<L: Lanes>(&self, first: usize) -> ([L::F; 3], L::F) {
-        let [place, width] = self.steps();
-        let place = L::splat(place);
-        let (x, y, z) = (
-            L::mul(place, L::words(part(&self.joints[0], first))),
-            L::mul(place, L::words(part(&self.joints[1], first))),
-            L::mul(place, L::words(part(&self.joints[2], first))),
-        );
-        let at = [
-            L::add(L::splat(self.corner.x), x),
-            L::add(L::splat(self.corner.y), y),
-            L::add(L::splat(self.corner.z), z),
-        ];
-        let width = L::mul(L::splat(width), L::words(part(&self.joints[3], first)));
-        (at, width)
+    pub(super) fn meets<L: Lanes>(&self, line: &Line, limit: f32) -> (u32, L::Eight, L::Eight) {
+        let [x, y, z, widths] = &self.joints;
+        let (x, y, z, widths) = (L::words(x), L::words(y), L::words(z), L::words(widths));
+        let [place, width] = self.step.map(i32::from);
+        // All in steps, of which the origin may be many away.
+        let from = (line.origin - self.corner.extend(0.0)) * power(-place);
+        let Seen {
+            across: [x, y],
+            depth,
+        } = line.across.see(&[x, y, z], from);
+        let segments = Segments {
+            root: Seen {
+                across: [L::head(x), L::head(y)],
+                depth: L::head(depth),
+            },
+            tip: Seen {
+                across: [L::tail(x), L::tail(y)],
+                depth: L::tail(depth),
+            },
+            widths: [L::head(widths), L::tail(widths)],
+        };
+        let met = segments.meet(power((width - place).max(-100)));
+        let t = met.depth.mul(L::Eight::splat(power(place)));
+        let t = L::Eight::splat(line.ahead).add(t);
+        let is = met.is & t.le(L::Eight::splat(limit)) & !t.le(L::Eight::splat(0.0));
+        (is & u32::from(self.used), t, met.along)
     }
 }
 
+/// Two to the power of `e`, -126 to 127.
 #[inline(always)]
-fn part(all: &[u16; 12], first: usize) -> &[u16; 8] {
-    match all[first..].first_chunk() {
-        Some(part) => part,
-        None => &[0; 8],
-    }
+fn power(e: i32) -> f32 {
+    f32::from_bits(((e + 127) as u32) << 23)
 }

@@ -1,6 +1,7 @@
+use super::lanes::{Lanes, Plain};
+use super::line::Line;
 use super::*;
 use crate::sampling::Rng;
-use crate::scene::ribbon::Segment;
 use glam::{Vec3, Vec4Swizzles};
 
 fn point(rng: &mut Rng) -> Vec3 {
@@ -107,26 +108,25 @@ fn furs(rng: &mut Rng) -> Vec<(&'static str, Vec<Vec<Vec4>>)> {
     ]
 }
 
-/// By a test of every segment.
-fn every(tree: &Tree, runs: &[Run], ray: &Ray, limit: f32, ignored: &Ignored) -> Option<Found> {
+/// By a test of every leaf.
+fn every(tree: &Tree, ray: &Ray, limit: f32, ignored: &Ignored) -> Option<Found> {
+    let line = Line::new(ray, &tree.ball);
     let mut best: Option<Found> = None;
-    for (run, of) in (0..).zip(runs) {
-        for half in 0..u32::from(of.segments) {
-            let segment = Segment {
-                root: tree.joint(run, half as usize),
-                tip: tree.joint(run, half as usize + 1),
-            };
-            let Some((t, _)) = segment.intersect(ray.origin, ray.dir) else {
-                continue;
-            };
+    for number in 0..tree.leaves.len() {
+        let leaf = &tree.leaves[number];
+        let (met, t, along) = leaf.meets::<Plain>(&line, limit);
+        let (t, along) = (Plain::eight(t), Plain::eight(along));
+        for lane in (0..8).filter(|lane| met >> lane & 1 == 1) {
+            let (run, half, t) = (leaf.run(lane), lane as u32 / 4, t[lane]);
             let is_ignored = t < ignored.clear && (ignored.first..ignored.end).contains(&run);
-            if t > 0.0 && t <= limit && !is_ignored && best.is_none_or(|b| t < b.t) {
-                let place = tree.places[run as usize];
+            let is_first = best.is_none_or(|b| (t, run, half) < (b.t, b.run, b.half));
+            if !is_ignored && is_first {
                 best = Some(Found {
                     t,
                     run,
                     half,
-                    place,
+                    along: along[lane],
+                    place: (number * leaf::RUNS + lane % leaf::RUNS) as u32,
                 });
             }
         }
@@ -135,7 +135,7 @@ fn every(tree: &Tree, runs: &[Run], ray: &Ray, limit: f32, ignored: &Ignored) ->
 }
 
 #[test]
-fn every_ray_meets_to_the_bit_what_a_test_of_all_segments_finds() {
+fn every_ray_meets_to_the_bit_what_a_test_of_all_leaves_finds() {
     let mut rng = Rng::new(4, 0);
     for (name, strands) in furs(&mut rng) {
         let (joints, runs) = runs(&strands);
@@ -152,11 +152,12 @@ fn every_ray_meets_to_the_bit_what_a_test_of_all_segments_finds() {
                 _ => 1.5 * point(&mut rng),
             };
             let target = joint.xyz() + joint.w * off;
-            let away = match i % 4 {
+            let away = match i % 7 {
                 0 => 1e-3,
                 1 => 1.0,
-                2 => 2.0 * size,
-                _ => 2_000.0 * size,
+                2 | 3 => 2.0 * size,
+                4 | 5 => 2_000.0 * size,
+                _ => 2e5 * size,
             };
             let dir = match i % 5 {
                 0 => Vec3::AXES[i % 3],
@@ -182,7 +183,7 @@ fn every_ray_meets_to_the_bit_what_a_test_of_all_segments_finds() {
                     end: 0,
                     clear: 0.0,
                 };
-                let want = every(&tree, &runs, &ray, limit, &ignored.unwrap_or(plain));
+                let want = every(&tree, &ray, limit, &ignored.unwrap_or(plain));
                 assert_eq!(
                     tree.closest(&ray, limit, ignored, |_| ()),
                     want,
@@ -193,13 +194,9 @@ fn every_ray_meets_to_the_bit_what_a_test_of_all_segments_finds() {
                     want.is_some(),
                     "{name}, ray {i}"
                 );
-                let line = Line {
-                    origin: ray.origin,
-                    dir,
-                };
-                let walk =
-                    tree.walk::<Plain, false>(&line, limit, &ignored.unwrap_or(plain), |_| ());
-                assert_eq!(walk, want, "{name}, ray {i}, without AVX2");
+                for (processor, met) in search::on_each_processor(&tree, &ray, limit, ignored) {
+                    assert_eq!(met, want, "{name}, ray {i}, {processor}");
+                }
                 if let Some(found) = want {
                     hits += 1;
                     // The limit itself is within.
@@ -210,6 +207,61 @@ fn every_ray_meets_to_the_bit_what_a_test_of_all_segments_finds() {
         }
         assert!(hits > 150 || name == "thin", "{name}: {hits}");
     }
+}
+
+/// In single precision along the ray and in double precision across the scene: the same, but where a ray just touches.
+#[test]
+fn a_leaf_meets_what_its_segments_do() {
+    let mut rng = Rng::new(7, 0);
+    let (mut hits, mut others) = (0, 0);
+    for (name, strands) in furs(&mut rng) {
+        let (joints, runs) = runs(&strands);
+        let tree = Tree::build(&joints, &runs, &[]);
+        for i in 0..4_000 {
+            let leaf = rng.bits() as usize % tree.leaves.len();
+            let (k, run) = tree.leaves[leaf].numbers().next().unwrap();
+            let (root, tip) = (tree.joint(run, 0), tree.joint(run, 1));
+            let target = root.lerp(tip, rng.uniform_f32());
+            let dir = point(&mut rng).normalize_or(Vec3::X);
+            let size = root.w.max(tip.w).max((tip - root).xyz().length());
+            let origin = target.xyz() + 1.5 * target.w * point(&mut rng) - size * dir;
+            let ray = Ray { origin, dir };
+            let line = Line::new(&ray, &tree.ball);
+            let (met, t, along) = tree.leaves[leaf].meets::<Plain>(&line, f32::INFINITY);
+            let (t, along) = (Plain::eight(t)[k], Plain::eight(along)[k]);
+
+            let [root, tip] = [root, tip].map(|joint| joint.as_dvec4());
+            let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
+            let (to_root, axis) = (root.truncate() - o, (tip - root).truncate());
+            let (depth, slope) = (to_root.dot(d), axis.dot(d));
+            let (flat_root, flat) = (to_root - depth * d, axis - slope * d);
+            let at = (-flat_root.dot(flat) / flat.length_squared().max(1e-300)).clamp(0.0, 1.0);
+            let distance = (flat_root + at * flat).length();
+            let radius = root.w + at * (tip.w - root.w);
+            let depth = depth + at * slope;
+            // Places are rounded where the fur is far from the origin of the scene.
+            let rounding =
+                8.0 * f64::from(f32::EPSILON) * o.abs().max_element() + 1e-4 * f64::from(size);
+            if (distance - radius).abs() < rounding || depth < rounding {
+                continue;
+            }
+            let is_met = met >> k & 1 == 1;
+            assert_eq!(is_met, distance < radius, "{name}, ray {i}: {ray:?}");
+            if is_met {
+                hits += 1;
+                // Along the axis one place is as good as the next.
+                if flat.length() > 0.1 * f64::from(size) && radius < 0.1 * flat.length() {
+                    assert!(
+                        (f64::from(t) - depth).abs() < 20.0 * rounding,
+                        "{name}, ray {i}"
+                    );
+                    assert!((f64::from(along) - at).abs() < 0.02, "{name}, ray {i}");
+                    others += 1;
+                }
+            }
+        }
+    }
+    assert!(hits > 5_000 && others > 1_000, "{hits} {others}");
 }
 
 #[test]

@@ -1,0 +1,113 @@
+//! For processors with AVX2 and FMA. To be used within functions that enable them only, without closures between, which
+//! would not be compiled for them.
+#![allow(
+    unsafe_code,
+    reason = "measured faster; whoever calls has asked the processor whether it has AVX2 and FMA, and the pointers are \
+              of arrays as long as what is read"
+)]
+
+use super::{CHILDREN, Lanes, Numbers, both};
+use glam::Vec4;
+use std::arch::x86_64::*;
+
+/// See the file.
+pub(in crate::scene::tree) struct Avx2;
+
+macro_rules! numbers {
+    ($type:ty, $count:literal, $set:ident, $fma:ident; $($name:ident $intrinsic:ident),*; $le:expr) => {
+        impl Numbers for $type {
+            const COUNT: u32 = $count;
+
+            $(
+                #[inline(always)]
+                fn $name(self, other: Self) -> Self {
+                    unsafe { $intrinsic(self, other) }
+                }
+            )*
+
+            #[inline(always)]
+            fn splat(x: f32) -> Self {
+                unsafe { $set(x) }
+            }
+
+            #[inline(always)]
+            fn mul_add(self, b: Self, c: Self) -> Self {
+                unsafe { $fma(self, b, c) }
+            }
+
+            #[inline(always)]
+            fn le(self, other: Self) -> u32 {
+                unsafe { $le(self, other) }
+            }
+        }
+    };
+}
+pub(super) use numbers;
+
+numbers! {
+    __m256, 8, _mm256_set1_ps, _mm256_fmadd_ps;
+    add _mm256_add_ps, sub _mm256_sub_ps, mul _mm256_mul_ps, div _mm256_div_ps, min _mm256_min_ps, max _mm256_max_ps;
+    |a, b| _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32
+}
+
+/// Three columns times a vector.
+#[inline(always)]
+pub(super) fn turn(columns: &[Vec4; 3], v: Vec4) -> Vec4 {
+    let [x, y, z] = columns.map(__m128::from);
+    unsafe {
+        let xy = _mm_fmadd_ps(y, _mm_set1_ps(v.y), _mm_mul_ps(x, _mm_set1_ps(v.x)));
+        _mm_fmadd_ps(z, _mm_set1_ps(v.z), xy).into()
+    }
+}
+
+impl Lanes for Avx2 {
+    type Eight = __m256;
+    type Sixteen = [__m256; 2];
+
+    #[inline(always)]
+    fn bytes(x: &[u8; CHILDREN]) -> Self::Sixteen {
+        unsafe {
+            let x = _mm_loadu_si128(x.as_ptr().cast());
+            [
+                _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(x)),
+                _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_srli_si128::<8>(x))),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    fn words(x: &[u16; 12]) -> Self::Sixteen {
+        unsafe {
+            let (head, tail) = (x.as_ptr().cast(), x.as_ptr().add(8).cast());
+            [_mm_loadu_si128(head), _mm_loadl_epi64(tail)]
+                .map(|x| _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(x)))
+        }
+    }
+
+    #[inline(always)]
+    fn head(x: Self::Sixteen) -> Self::Eight {
+        x[0]
+    }
+
+    #[inline(always)]
+    fn tail(x: Self::Sixteen) -> Self::Eight {
+        unsafe { _mm256_permute2f128_ps::<0x21>(x[0], x[1]) }
+    }
+
+    #[inline(always)]
+    fn eight(x: Self::Eight) -> [f32; 8] {
+        let mut all = [0.0; 8];
+        unsafe { _mm256_storeu_ps(all.as_mut_ptr(), x) };
+        all
+    }
+
+    #[inline(always)]
+    fn sixteen(x: Self::Sixteen) -> [f32; CHILDREN] {
+        both([Self::eight(x[0]), Self::eight(x[1])])
+    }
+
+    #[inline(always)]
+    fn turn(columns: &[Vec4; 3], v: Vec4) -> Vec4 {
+        turn(columns, v)
+    }
+}
