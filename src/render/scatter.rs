@@ -178,7 +178,8 @@ impl<'a> Scatter<'a> {
 
 /// Where a ray meets a strand across its width, -1..1 in radii, positive toward `tangent x viewer`.
 fn offset_across(strands: &Strands, hit: &StrandHit, ray: &Ray) -> f32 {
-    let (segment, along) = (strands.segment(hit), strands.along(hit));
+    let segment = strands.segment(hit);
+    let along = segment.nearest(ray.origin, ray.dir);
     let radius = segment.root.w + along * (segment.tip.w - segment.root.w);
     let axis = segment.tip.xyz() - segment.root.xyz();
     let side = axis.cross(-ray.dir).normalize_or_zero();

@@ -23,18 +23,26 @@ impl Segment {
     /// * `dir`: unit length.
     /// * Returns the distance along the ray, which may be negative, and the place along the segment,
     ///   0 root .. 1 tip.
-    #[inline(always)]
     pub fn intersect(&self, origin: Vec3, dir: Vec3) -> Option<(f32, f32)> {
-        let to_root = self.root.xyz() - origin;
-        let axis = self.tip.xyz() - self.root.xyz();
-        let (depth, slope) = (to_root.dot(dir), axis.dot(dir));
+        let along = self.nearest(origin, dir);
+        let at = self.root.lerp(self.tip, along);
+        let to = at.xyz() - origin;
+        let depth = to.dot(dir);
+        let distance2 = (to - depth * dir).length_squared();
+        (distance2 <= at.w * at.w).then_some((depth, along))
+    }
+
+    /// The place along the segment, 0 root .. 1 tip, that is nearest to a ray or to the line behind it.
+    ///
+    /// * `dir`: unit length.
+    #[inline(always)]
+    pub fn nearest(&self, origin: Vec3, dir: Vec3) -> f32 {
         // Both vectors projected onto the plane across the ray.
-        let (flat_root, flat_axis) = (to_root - depth * dir, axis - slope * dir);
-        let along = -flat_root.dot(flat_axis) / flat_axis.length_squared().max(f32::MIN_POSITIVE);
-        let along = along.clamp(0.0, 1.0);
-        let radius = self.root.w + along * (self.tip.w - self.root.w);
-        let distance2 = (flat_root + along * flat_axis).length_squared();
-        (distance2 <= radius * radius).then_some((depth + along * slope, along))
+        let flat = |v: Vec3| v - v.dot(dir) * dir;
+        let root = flat(self.root.xyz() - origin);
+        let axis = flat(self.tip.xyz() - self.root.xyz());
+        let along = -root.dot(axis) / axis.length_squared().max(f32::MIN_POSITIVE);
+        along.clamp(0.0, 1.0)
     }
 }
 
@@ -91,22 +99,13 @@ pub(super) struct Segments<N> {
     pub(super) widths: [N; 2],
 }
 
-/// Where a ray meets segments side by side, if it does.
-pub(super) struct Meeting<N> {
-    /// Whether it does, ahead or behind, a bit each.
-    pub(super) is: u32,
-    /// Along the ray.
-    pub(super) depth: N,
-    /// Along the segment, 0 root .. 1 tip.
-    pub(super) along: N,
-}
-
 impl<N: Numbers> Segments<N> {
-    /// As [`Segment::intersect`] but for rounding.
+    /// Which of them the ray meets, ahead or behind, a bit each, and how far along it: as [`Segment::intersect`] but for
+    /// rounding.
     ///
     /// * `unit`: of the half widths, in that of the other lengths.
     #[inline(always)]
-    pub(super) fn meet(&self, unit: f32) -> Meeting<N> {
+    pub(super) fn meet(&self, unit: f32) -> (u32, N) {
         let (root, tip) = (&self.root, &self.tip);
         let [x, y] = root.across;
         let (dx, dy) = (tip.across[0].sub(x), tip.across[1].sub(y));
@@ -118,11 +117,9 @@ impl<N: Numbers> Segments<N> {
         let (x, y) = (x.add(along.mul(dx)), y.add(along.mul(dy)));
         let [from, to] = self.widths;
         let radius = from.add(along.mul(to.sub(from))).mul(N::splat(unit));
-        Meeting {
-            is: x.mul(x).add(y.mul(y)).le(radius.mul(radius)),
-            depth: root.depth.add(along.mul(tip.depth.sub(root.depth))),
-            along,
-        }
+        let is_met = x.mul(x).add(y.mul(y)).le(radius.mul(radius));
+        let slope = tip.depth.sub(root.depth);
+        (is_met, root.depth.add(along.mul(slope)))
     }
 }
 

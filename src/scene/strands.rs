@@ -229,11 +229,6 @@ impl Strands {
         self.tree.segment(&hit.found)
     }
 
-    /// Where along the segment it was met, 0 root .. 1 tip.
-    pub fn along(&self, hit: &StrandHit) -> f32 {
-        hit.found.along
-    }
-
     /// Where among [`Strands::joints`] the segment begins that was met.
     pub fn joint_of(&self, hit: &StrandHit) -> usize {
         self.joint_index(&hit.found, hit.strand)
@@ -262,7 +257,7 @@ impl Strands {
         // What is said of the run is on its way while the search goes on.
         let fetch = |run| self.courses.fetch(run as usize);
         let found = self.tree.closest(ray, limit, leaving.map(|l| l.0), fetch)?;
-        Some(self.describe(&found))
+        Some(self.describe(&found, ray))
     }
 
     /// Whether any strand lies in front of `limit`.
@@ -270,9 +265,9 @@ impl Strands {
         self.tree.any(ray, limit, leaving.map(|l| l.0))
     }
 
-    fn describe(&self, found: &Found) -> StrandHit {
+    fn describe(&self, found: &Found, ray: &Ray) -> StrandHit {
         let course = &self.courses[found.run as usize];
-        let along = found.along;
+        let along = self.tree.segment(found).nearest(ray.origin, ray.dir);
         let half = found.half as usize;
         let [from, to] = [half, half + 1].map(|k| f32::from(course.at[k]) / AT_STEPS);
         let at = from + along * (to - from);

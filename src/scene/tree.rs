@@ -50,8 +50,6 @@ pub(super) struct Found {
     pub(super) run: u32,
     /// First or second segment of the run.
     pub(super) half: u32,
-    /// Place along the segment, 0 root .. 1 tip.
-    pub(super) along: f32,
     /// Where the run lies: its leaf and its place there.
     place: u32,
 }

@@ -34,11 +34,10 @@ pub(super) trait Lanes {
     type Eight: Numbers;
     type Sixteen: Numbers;
     fn bytes(x: &[u8; CHILDREN]) -> Self::Sixteen;
-    /// The last four are any.
-    fn words(x: &[u16; 12]) -> Self::Sixteen;
-    /// The first eight.
+    fn words(x: &[u16; 16]) -> Self::Sixteen;
+    /// Eight from the first, the fifth and the ninth on.
     fn head(x: Self::Sixteen) -> Self::Eight;
-    /// Eight, of which four come after those of [`Lanes::head`].
+    fn middle(x: Self::Sixteen) -> Self::Eight;
     fn tail(x: Self::Sixteen) -> Self::Eight;
     fn eight(x: Self::Eight) -> [f32; 8];
     fn sixteen(x: Self::Sixteen) -> [f32; CHILDREN];
@@ -223,9 +222,9 @@ impl Lanes for Plain {
     }
 
     #[inline(always)]
-    fn words(x: &[u16; 12]) -> Self::Sixteen {
+    fn words(x: &[u16; 16]) -> Self::Sixteen {
         let four = |k: usize| Vec4::from_array(std::array::from_fn(|i| f32::from(x[k + i])));
-        [[four(0), four(4)], [four(8), Vec4::ZERO]]
+        [[four(0), four(4)], [four(8), four(12)]]
     }
 
     #[inline(always)]
@@ -234,8 +233,13 @@ impl Lanes for Plain {
     }
 
     #[inline(always)]
-    fn tail(x: Self::Sixteen) -> Self::Eight {
+    fn middle(x: Self::Sixteen) -> Self::Eight {
         [x[0][1], x[1][0]]
+    }
+
+    #[inline(always)]
+    fn tail(x: Self::Sixteen) -> Self::Eight {
+        x[1]
     }
 
     #[inline(always)]

@@ -9,6 +9,9 @@ use glam::{Vec3, Vec4, Vec4Swizzles};
 /// Runs of a leaf at most.
 pub(super) const RUNS: usize = 4;
 
+/// Joints of a leaf.
+const JOINTS: usize = 3 * RUNS;
+
 /// Whether the next leaf belongs to the same child of a node.
 const FOLLOWED: u8 = 1 << 7;
 
@@ -17,8 +20,8 @@ const FOLLOWED: u8 = 1 << 7;
 #[derive(Clone, Debug)]
 #[repr(C, align(128))]
 pub(super) struct Leaf {
-    /// Along x, y and z, and half widths.
-    joints: [[u16; 12]; 4],
+    /// Of twelve joints the places along x, y and z, and the half widths.
+    joints: [u16; 4 * JOINTS],
     corner: Vec3,
     /// Exponents of two: the step of places and that of widths.
     step: [i8; 2],
@@ -35,7 +38,7 @@ impl Leaf {
     ///   a node.
     pub(super) fn new(joints: &[Vec4], runs: &[Run], numbers: &[u32], is_followed: bool) -> Self {
         let number = |k: usize| numbers[k.min(numbers.len() - 1)];
-        let mut all = [Vec4::ZERO; 12];
+        let mut all = [Vec4::ZERO; JOINTS];
         let (mut used, mut last) = (0, u8::from(is_followed) * FOLLOWED);
         for k in 0..RUNS {
             let run = runs[number(k) as usize];
@@ -57,7 +60,7 @@ impl Leaf {
         // Not so fine beside the widths that their squares could be too large.
         let place = exponent((hi - lo).xyz().max_element()).max(width - 4);
         let mut leaf = Self {
-            joints: [[0; 12]; 4],
+            joints: [0; 4 * JOINTS],
             corner: lo.xyz(),
             step: [place, width],
             used,
@@ -68,9 +71,9 @@ impl Leaf {
         for (k, joint) in all.iter().enumerate() {
             let at = ((joint.xyz() - leaf.corner) / place).round();
             for axis in 0..3 {
-                leaf.joints[axis][k] = at[axis] as u16;
+                leaf.joints[JOINTS * axis + k] = at[axis] as u16;
             }
-            leaf.joints[3][k] = (joint.w / width).round() as u16;
+            leaf.joints[JOINTS * 3 + k] = (joint.w / width).round() as u16;
         }
         leaf
     }
@@ -83,7 +86,7 @@ impl Leaf {
     /// Joint `0..=2` of a run `0..4`.
     pub(super) fn joint(&self, run: usize, joint: usize) -> Vec4 {
         let [place, width] = self.steps();
-        let j = self.joints.map(|all| f32::from(all[run + 4 * joint]));
+        let j = [0, 1, 2, 3].map(|axis| f32::from(self.joints[JOINTS * axis + run + 4 * joint]));
         (self.corner + place * Vec3::new(j[0], j[1], j[2])).extend(width * j[3])
     }
 
@@ -114,35 +117,48 @@ impl Leaf {
             .map(|k| (k, self.runs[k]))
     }
 
-    /// Which segments a ray meets ahead of its start and up to `limit`, a bit each, how far along it, and where along the
-    /// segments.
+    /// Which segments a ray meets ahead of its start and up to `limit`, a bit each, and how far along it.
     #[inline(always)]
-    pub(super) fn meets<L: Lanes>(&self, line: &Line, limit: f32) -> (u32, L::Eight, L::Eight) {
-        let [x, y, z, widths] = &self.joints;
-        let (x, y, z, widths) = (L::words(x), L::words(y), L::words(z), L::words(widths));
+    pub(super) fn meets<L: Lanes>(&self, line: &Line, limit: f32) -> (u32, L::Eight) {
+        let points = [
+            self.row::<L>(0),
+            self.row::<L>(JOINTS),
+            self.row::<L>(2 * JOINTS),
+        ];
+        // Sixteen that end with those of the twelve joints.
+        let widths = self.row::<L>(3 * JOINTS - 4);
         let [place, width] = self.step.map(i32::from);
         // All in steps, of which the origin may be many away.
         let from = (line.origin - self.corner.extend(0.0)) * power(-place);
         let Seen {
             across: [x, y],
             depth,
-        } = line.across.see(&[x, y, z], from);
+        } = line.across.see(&points, from);
         let segments = Segments {
             root: Seen {
                 across: [L::head(x), L::head(y)],
                 depth: L::head(depth),
             },
             tip: Seen {
-                across: [L::tail(x), L::tail(y)],
-                depth: L::tail(depth),
+                across: [L::middle(x), L::middle(y)],
+                depth: L::middle(depth),
             },
-            widths: [L::head(widths), L::tail(widths)],
+            widths: [L::middle(widths), L::tail(widths)],
         };
-        let met = segments.meet(power((width - place).max(-100)));
-        let t = met.depth.mul(L::Eight::splat(power(place)));
+        let (is_met, depth) = segments.meet(power((width - place).max(-100)));
+        let t = depth.mul(L::Eight::splat(power(place)));
         let t = L::Eight::splat(line.ahead).add(t);
-        let is = met.is & t.le(L::Eight::splat(limit)) & !t.le(L::Eight::splat(0.0));
-        (is & u32::from(self.used), t, met.along)
+        let is_met = is_met & t.le(L::Eight::splat(limit)) & !t.le(L::Eight::splat(0.0));
+        (is_met & u32::from(self.used), t)
+    }
+
+    /// Sixteen numbers from one on.
+    #[inline(always)]
+    fn row<L: Lanes>(&self, first: usize) -> L::Sixteen {
+        match self.joints[first..].first_chunk() {
+            Some(row) => L::words(row),
+            None => L::Sixteen::splat(0.0),
+        }
     }
 }
 

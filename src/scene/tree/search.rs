@@ -152,8 +152,11 @@ impl<F: Fn(u32)> Query<'_, F> {
             for leaf in &found[..found_count] {
                 fetch(&leaves[leaf.number()]);
             }
-            for k in 1..=2 {
-                fetch(&nodes[aside[count.saturating_sub(k)].number()]);
+            for k in 1..=4 {
+                // Where nothing is set aside, what an earlier search left there.
+                if let Some(node) = nodes.get(aside[count.saturating_sub(k)].number()) {
+                    fetch(node);
+                }
             }
 
             if self.look::<L, ANY>(leaves, &ripe[..ripe_count], &line, &mut nearest) {
@@ -206,12 +209,12 @@ impl<F: Fn(u32)> Query<'_, F> {
         nearest: &mut Nearest,
     ) -> bool {
         let leaf = &leaves[number];
-        let (mut met, t, along) = leaf.meets::<L>(line, nearest.limit);
+        let (mut met, t) = leaf.meets::<L>(line, nearest.limit);
         if met == 0 {
             return false;
         }
         let mut is_nearer = false;
-        let (t, along) = (L::eight(t), L::eight(along));
+        let t = L::eight(t);
         while met != 0 {
             let lane = met.trailing_zeros() as usize % 8;
             met &= met - 1;
@@ -219,7 +222,6 @@ impl<F: Fn(u32)> Query<'_, F> {
                 t: t[lane],
                 run: leaf.run(lane),
                 half: lane as u32 / 4,
-                along: along[lane],
                 place: (number * RUNS + lane % RUNS) as u32,
             };
             if found.is_before(nearest.found.as_ref()) && !self.ignored.covers(&found) {

@@ -53,7 +53,7 @@ numbers! {
 /// Three columns times a vector.
 #[inline(always)]
 pub(super) fn turn(columns: &[Vec4; 3], v: Vec4) -> Vec4 {
-    let [x, y, z] = columns.map(__m128::from);
+    let (x, y, z) = (columns[0].into(), columns[1].into(), columns[2].into());
     unsafe {
         let xy = _mm_fmadd_ps(y, _mm_set1_ps(v.y), _mm_mul_ps(x, _mm_set1_ps(v.x)));
         _mm_fmadd_ps(z, _mm_set1_ps(v.z), xy).into()
@@ -76,11 +76,13 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn words(x: &[u16; 12]) -> Self::Sixteen {
+    fn words(x: &[u16; 16]) -> Self::Sixteen {
         unsafe {
             let (head, tail) = (x.as_ptr().cast(), x.as_ptr().add(8).cast());
-            [_mm_loadu_si128(head), _mm_loadl_epi64(tail)]
-                .map(|x| _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(x)))
+            [
+                _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(_mm_loadu_si128(head))),
+                _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(_mm_loadu_si128(tail))),
+            ]
         }
     }
 
@@ -90,8 +92,13 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn tail(x: Self::Sixteen) -> Self::Eight {
+    fn middle(x: Self::Sixteen) -> Self::Eight {
         unsafe { _mm256_permute2f128_ps::<0x21>(x[0], x[1]) }
+    }
+
+    #[inline(always)]
+    fn tail(x: Self::Sixteen) -> Self::Eight {
+        x[1]
     }
 
     #[inline(always)]

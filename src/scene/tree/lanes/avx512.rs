@@ -30,9 +30,9 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
-    fn words(x: &[u16; 12]) -> Self::Sixteen {
+    fn words(x: &[u16; 16]) -> Self::Sixteen {
         unsafe {
-            let x = _mm256_maskz_loadu_epi16(0xfff, x.as_ptr().cast());
+            let x = _mm256_loadu_si256(x.as_ptr().cast());
             _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(x))
         }
     }
@@ -43,11 +43,16 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
-    fn tail(x: Self::Sixteen) -> Self::Eight {
+    fn middle(x: Self::Sixteen) -> Self::Eight {
         unsafe {
             let x = _mm512_castps_si512(x);
             _mm256_castsi256_ps(_mm512_castsi512_si256(_mm512_alignr_epi32::<4>(x, x)))
         }
+    }
+
+    #[inline(always)]
+    fn tail(x: Self::Sixteen) -> Self::Eight {
+        unsafe { _mm512_extractf32x8_ps::<1>(x) }
     }
 
     #[inline(always)]
