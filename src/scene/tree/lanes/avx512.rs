@@ -72,7 +72,7 @@ impl Lanes for Avx512 {
         turn(columns, v)
     }
 
-    /// Up to four, which is nearly always so, are sorted without a branch.
+    /// Sorted without a branch where there are few.
     #[inline(always)]
     fn line_up(
         chosen: u16,
@@ -80,36 +80,146 @@ impl Lanes for Avx512 {
         children: Children<'_>,
         row: &mut [Aside; CHILDREN],
     ) -> usize {
-        let count = chosen.count_ones() as usize;
-        if count > 4 {
-            return line_up(chosen, &Self::sixteen(begins), children, row);
-        }
         unsafe {
-            let places = _mm512_cvtepu8_epi32(_mm_loadu_si128(children.places.as_ptr().cast()));
-            let numbers = _mm512_add_epi32(places, _mm512_set1_epi32(children.first as i32));
-            // What is not chosen becomes zero, and so the farthest of all or last.
-            let begins = _mm512_maskz_compress_epi32(chosen, _mm512_castps_si512(begins));
-            let numbers = _mm512_maskz_compress_epi32(chosen, numbers);
-            let begins = _mm256_cvtepu32_epi64(_mm512_castsi512_si128(begins));
-            let numbers = _mm256_cvtepu32_epi64(_mm512_castsi512_si128(numbers));
-            let all = _mm256_or_si256(_mm256_slli_epi64::<32>(begins), numbers);
-            let all = order::<0b10_11_00_01, 0b00_11_11_00>(all);
-            let all = order::<0b01_00_11_10, 0b11_11_00_00>(all);
-            let all = order::<0b10_11_00_01, 0b11_00_11_00>(all);
-            _mm256_storeu_si256(row.as_mut_ptr().cast(), all);
+            let count = chosen.count_ones() as usize;
+            if count > 4 {
+                line_up_many(chosen, begins, children, row);
+            } else {
+                let four = _mm512_castsi512_si256(gather(chosen, begins, children));
+                _mm256_storeu_si256(row.as_mut_ptr().cast(), sort_four(four));
+            }
+            count
         }
-        count
     }
 }
 
-/// A step of a bitonic sort of four.
-///
-/// * `PARTNERS`: which two are compared. * `LESS`: who gets the lesser, two bits each.
+/// More than four, one of thirty times.
+#[inline(never)]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,popcnt,lzcnt")]
+fn line_up_many(chosen: u16, begins: __m512, children: Children<'_>, row: &mut [Aside; CHILDREN]) {
+    if chosen.count_ones() > 8 {
+        line_up(chosen, &Avx512::sixteen(begins), children, row);
+    } else {
+        let eight = sort_eight(gather(chosen, begins, children));
+        unsafe { _mm512_storeu_si512(row.as_mut_ptr().cast(), eight) };
+    }
+}
+
+/// The chosen among children, at most eight, in their order; then zeros, which are the nearest of all.
 #[inline(always)]
-fn order<const PARTNERS: i32, const LESS: i32>(all: __m256i) -> __m256i {
+fn gather(chosen: u16, begins: __m512, children: Children<'_>) -> __m512i {
     unsafe {
-        let others = _mm256_permute4x64_epi64::<PARTNERS>(all);
-        let (less, more) = (_mm256_min_epu64(all, others), _mm256_max_epu64(all, others));
-        _mm256_blend_epi32::<LESS>(more, less)
+        let places = _mm512_cvtepu8_epi32(_mm_loadu_si128(children.places.as_ptr().cast()));
+        let numbers = _mm512_add_epi32(places, _mm512_set1_epi32(children.first as i32));
+        let begins = _mm512_maskz_compress_epi32(chosen, _mm512_castps_si512(begins));
+        let numbers = _mm512_maskz_compress_epi32(chosen, numbers);
+        let begins = _mm512_cvtepu32_epi64(_mm512_castsi512_si256(begins));
+        let numbers = _mm512_cvtepu32_epi64(_mm512_castsi512_si256(numbers));
+        _mm512_or_si512(_mm512_slli_epi64::<32>(begins), numbers)
+    }
+}
+
+/// The greatest first, by a bitonic sort.
+#[inline(always)]
+fn sort_four(all: __m256i) -> __m256i {
+    let all = order_four::<2, 1>(all);
+    let all = order_four::<4, 2>(all);
+    order_four::<4, 1>(all)
+}
+
+/// As [`sort_four`].
+#[inline(always)]
+fn sort_eight(all: __m512i) -> __m512i {
+    let all = order_eight::<2, 1>(all);
+    let all = order_eight::<4, 2>(all);
+    let all = order_eight::<4, 1>(all);
+    let all = order_eight::<8, 4>(all);
+    let all = order_eight::<8, 2>(all);
+    order_eight::<8, 1>(all)
+}
+
+/// A step of a bitonic sort: every number and the one `FAR` away, in blocks of `BLOCK` that go up and down by turns.
+#[inline(always)]
+fn order_four<const BLOCK: usize, const FAR: usize>(all: __m256i) -> __m256i {
+    let partners = const { partners::<4>(FAR) };
+    unsafe {
+        let others = _mm256_permutexvar_epi64(_mm256_loadu_si256(partners.as_ptr().cast()), all);
+        let more = _mm256_max_epu64(all, others);
+        _mm256_mask_min_epu64(more, const { lesser(BLOCK, FAR) }, all, others)
+    }
+}
+
+/// As [`order_four`].
+#[inline(always)]
+fn order_eight<const BLOCK: usize, const FAR: usize>(all: __m512i) -> __m512i {
+    let partners = const { partners::<8>(FAR) };
+    unsafe {
+        let others = _mm512_permutexvar_epi64(_mm512_loadu_si512(partners.as_ptr().cast()), all);
+        let more = _mm512_max_epu64(all, others);
+        _mm512_mask_min_epu64(more, const { lesser(BLOCK, FAR) }, all, others)
+    }
+}
+
+/// Who is compared with whom.
+const fn partners<const N: usize>(far: usize) -> [u64; N] {
+    let mut all = [0; N];
+    let mut k = 0;
+    while k < N {
+        all[k] = (k ^ far) as u64;
+        k += 1;
+    }
+    all
+}
+
+/// Who gets the lesser of both, a bit each.
+const fn lesser(block: usize, far: usize) -> u8 {
+    let mut all = 0;
+    let mut k = 0;
+    while k < 8 {
+        all |= (((k & block == 0) != (k & far == 0)) as u8) << k;
+        k += 1;
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::Rng;
+
+    #[test]
+    fn children_are_in_order_whatever_their_number() {
+        if !is_x86_feature_detected!("avx512f") || !is_x86_feature_detected!("avx512vl") {
+            return;
+        }
+        let places = std::array::from_fn(|k| k as u8);
+        let children = Children {
+            first: 70,
+            places: &places,
+        };
+        let mut rng = Rng::new(3, 0);
+        for i in 0..2_000 {
+            // Some alike, some of them zero.
+            let begins = std::array::from_fn(|_| (rng.bits() % (3 + i % 40)) as f32);
+            let chosen = (rng.bits() & rng.bits() | u32::from(i % 9 == 0) * 0xff77) as u16;
+            let [mut quick, mut plain] = [[Aside::NONE; CHILDREN]; 2];
+            let count = line_up(chosen, &begins, children, &mut plain);
+            // SAFETY: the processor was asked.
+            let quick_count = unsafe { on_this_processor(chosen, &begins, children, &mut quick) };
+            assert_eq!(count, quick_count);
+            assert_eq!(quick[..count], plain[..count]);
+        }
+    }
+
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+    fn on_this_processor(
+        chosen: u16,
+        begins: &[f32; CHILDREN],
+        children: Children<'_>,
+        row: &mut [Aside; CHILDREN],
+    ) -> usize {
+        // SAFETY: sixteen numbers are read of sixteen.
+        let begins = unsafe { _mm512_loadu_ps(begins.as_ptr()) };
+        Avx512::line_up(chosen, begins, children, row)
     }
 }
