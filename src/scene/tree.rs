@@ -4,6 +4,7 @@
 //! a cache and a leaf two, and a leaf holds all that decides what a ray meets. The answer does not depend on the
 //! shape of the tree, nor on the processor.
 
+mod bounds;
 mod build;
 mod lanes;
 mod leaf;

@@ -5,6 +5,7 @@
 //! cut in two where that costs a ray least (surface area heuristic in bins, Wald 2007), the largest part
 //! first, until there are sixteen parts.
 
+use super::bounds::Bounds;
 use super::leaf::{Leaf, RUNS};
 use super::node::{CHILDREN, Child, Node};
 use super::{DEPTH, Run};
@@ -90,38 +91,6 @@ struct Part {
     begin: usize,
     count: usize,
     below: Option<Box<Branch>>,
-}
-
-/// A box.
-#[derive(Clone, Copy)]
-struct Bounds {
-    lo: Vec3,
-    hi: Vec3,
-}
-
-impl Bounds {
-    const NONE: Self = Self {
-        lo: Vec3::INFINITY,
-        hi: Vec3::NEG_INFINITY,
-    };
-
-    fn with(self, other: Self) -> Self {
-        Self {
-            lo: self.lo.min(other.lo),
-            hi: self.hi.max(other.hi),
-        }
-    }
-
-    /// Half of its surface; 0 for none.
-    fn area(&self) -> f32 {
-        let size = (self.hi - self.lo).max(Vec3::ZERO);
-        size.x * size.y + size.y * size.z + size.z * size.x
-    }
-
-    /// Twice its middle.
-    fn middle(&self) -> Vec3 {
-        self.lo + self.hi
-    }
 }
 
 /// A run along the axes of a node.
