@@ -25,8 +25,8 @@ impl Ball {
         }
     }
 
-    /// How far from where it is a [`Line`] may be for a box or a leaf, by rounding: for all of them at most what
-    /// it is for the farthest.
+    /// How far from where it is a [`Line`] may be for a box or a leaf, by rounding: some thirty times half of the last
+    /// place of coordinates that are at most twice the radius.
     pub(super) fn blur(&self) -> f32 {
         32.0 * f32::EPSILON * self.radius
     }

@@ -29,7 +29,7 @@ struct Room {
 }
 
 thread_local! {
-    // Kept, for to fill it anew takes a tenth of a short search.
+    // Kept: to fill it anew would be five kilobytes of writing a ray.
     static ROOM: RefCell<Room> = const {
         RefCell::new(Room {
             nodes: [Aside::NONE; ASIDE + CHILDREN],
