@@ -201,7 +201,8 @@ mod tests {
         for i in 0..2_000 {
             // Some alike, some of them zero.
             let begins = std::array::from_fn(|_| (rng.bits() % (3 + i % 40)) as f32);
-            let chosen = (rng.bits() & rng.bits() | u32::from(i % 9 == 0) * 0xff77) as u16;
+            let (some, most) = (rng.bits() & rng.bits(), rng.bits() | rng.bits());
+            let chosen = [some, most][usize::from(i % 9 == 0)] as u16;
             let [mut quick, mut plain] = [[Aside::NONE; CHILDREN]; 2];
             let count = line_up(chosen, &begins, children, &mut plain);
             // SAFETY: the processor was asked.
