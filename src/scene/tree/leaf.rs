@@ -33,6 +33,8 @@ pub(super) struct Leaf {
     runs: [u32; RUNS],
 }
 
+const _: () = assert!(size_of::<Leaf>() == 128);
+
 impl Leaf {
     /// * `joints`: of the scene. * `numbers`: of one to four runs. * `is_followed`: by a leaf of the same child of
     ///   a node.

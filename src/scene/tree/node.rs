@@ -27,6 +27,8 @@ pub(super) struct Node {
     leaves: u16,
 }
 
+const _: () = assert!(size_of::<Node>() == 192);
+
 /// Children of one kind: their numbers are those of the first and their places together.
 #[derive(Clone, Copy)]
 pub(super) struct Children<'a> {
