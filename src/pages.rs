@@ -72,7 +72,7 @@ impl<T> Table<T> {
         self.len() == 0
     }
 
-    #[inline(always)]
+    /// All entries.
     pub(crate) fn entries(&self) -> &[T] {
         &self.all[self.first..]
     }

@@ -5,6 +5,8 @@ use crate::sampling::{Sobol, hash64};
 /// What a group of numbers is for; each gets its own sequence.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Purpose {
+    /// The cell from which to look at the light.
+    Outlook = 0,
     /// Place in the pixel.
     Filter = 1,
     /// Candidates drawn from the scattering model.

@@ -2,7 +2,9 @@
 
 use super::draws::{Draws, Purpose};
 use super::mattes::Seen;
-use super::resample::{Plan, Target, candidates, chance_of_asking, resample};
+use super::resample::{
+    Plan, Prospect, TYPICAL_OPEN, Target, candidates, chance_of_asking, resample,
+};
 use super::scatter::{Direction, Scatter};
 use super::{Filter, Sampler};
 use crate::color::{Rgb, luminance};
@@ -54,6 +56,8 @@ pub(super) struct Sample {
 struct Vertex<'a> {
     scatter: &'a Scatter<'a>,
     draws: &'a Draws,
+    /// What light is thought to come here.
+    prospect: Prospect<'a>,
     /// Scattering events before this one.
     depth: u32,
     /// Share of what leaves here that reaches the eye.
@@ -158,9 +162,11 @@ impl Integrator<'_> {
         let mut scatter = first;
         for depth in 0..FAR_CAP {
             let on_floor = floor.is_some() && depth == 0;
+            let prospect = self.prospect(scatter, draws, depth);
             let at = Vertex {
                 scatter,
                 draws,
+                prospect,
                 depth,
                 throughput,
                 enough,
@@ -197,7 +203,7 @@ impl Integrator<'_> {
                 if on_floor {
                     return sum;
                 }
-                let (light, light_pdf) = environment.eval(ray.dir);
+                let (light, light_pdf, _) = prospect.eval(environment.spot(ray.dir));
                 return sum
                     + throughput * light * self.escape_weight(depth, direction.pdf, light_pdf);
             };
@@ -209,14 +215,25 @@ impl Integrator<'_> {
         sum
     }
 
+    /// What light is thought to come to a scattering point.
+    fn prospect(&self, scatter: &Scatter<'_>, draws: &Draws, depth: u32) -> Prospect<'_> {
+        let sight = (self.scene.outlook.as_ref())
+            .filter(|_| self.sampler == Sampler::Qsir)
+            .and_then(|outlook| {
+                let [x, y, z, _] = draws.point(depth, Purpose::Outlook);
+                Some(outlook.sight(outlook.at(scatter.position(), [x, y, z])?))
+            });
+        Prospect::new(&self.scene.environment, sight)
+    }
+
     /// The direction in which the path goes on.
     fn continue_from(&self, scatter: &Scatter<'_>, draws: &Draws, depth: u32) -> Option<Direction> {
         if self.sampler == Sampler::QsirOneRay
             && let Some(plan) = Plan::one_ray(depth)
         {
-            let environment = &self.scene.environment;
+            let prospect = Prospect::new(&self.scene.environment, None);
             let target = self.target(depth);
-            return resample(scatter, environment, plan, &target, draws, depth);
+            return resample(scatter, prospect, plan, &target, draws, depth);
         }
         let u = draws.point(depth, Purpose::Continue);
         scatter.sample([u[0], u[1], u[2]])
@@ -243,9 +260,11 @@ impl Integrator<'_> {
             Sampler::Bsdf | Sampler::QsirOneRay => Rgb::ZERO,
             Sampler::Qsir => {
                 let mut sum = Rgb::ZERO;
-                for c in candidates(scatter, environment, Plan::direct(depth), draws, depth) {
+                for c in candidates(scatter, at.prospect, Plan::direct(depth), draws, depth) {
                     let light = at.throughput * c.density * c.light * c.weight;
-                    sum += self.ask_by_chance(at, c.dir, f32::INFINITY, light, c.chance, out);
+                    let sent = chance_of_asking(light, c.open, at.enough);
+                    sum +=
+                        self.ask_by_chance(at, c.dir, f32::INFINITY, light, [c.chance, sent], out);
                 }
                 sum
             }
@@ -281,7 +300,10 @@ impl Integrator<'_> {
         let [share, _] = self.lamp_shares(at.on_floor, lamp.pdf, scatter_pdf);
         let light = at.throughput * density * lamp.radiance * (share / lamp.pdf);
         match self.sampler {
-            Sampler::Qsir => self.ask_by_chance(at, lamp.dir, lamp.distance, light, u[3], out),
+            Sampler::Qsir => {
+                let sent = chance_of_asking(light, TYPICAL_OPEN, at.enough);
+                self.ask_by_chance(at, lamp.dir, lamp.distance, light, [u[3], sent], out)
+            }
             _ => self.unless_occluded(at.scatter, lamp.dir, lamp.distance, light, out),
         }
     }
@@ -310,16 +332,17 @@ impl Integrator<'_> {
     }
 
     /// As [`Self::unless_occluded`] on the average, but most rays that would bring little are not sent.
+    ///
+    /// * `chance`: a number in `[0, 1)`. * `sent`: the probability with which it is sent.
     fn ask_by_chance(
         &self,
         at: &Vertex<'_>,
         dir: Vec3,
         far: f32,
         light: Rgb,
-        chance: f32,
+        [chance, sent]: [f32; 2],
         out: &mut Sample,
     ) -> Rgb {
-        let sent = chance_of_asking(light, at.enough);
         // Also drops NaN.
         if chance < sent {
             self.unless_occluded(at.scatter, dir, far, light / sent, out)

@@ -22,11 +22,17 @@
 use super::draws::{Draws, Purpose};
 use super::scatter::{Direction, Scatter};
 use crate::color::{Rgb, luminance};
-use crate::scene::Environment;
+use crate::scene::{Aim, Environment, Sight, Spot};
 use glam::Vec3;
 
 /// Scattering that rays which hit other strands are expected to meet there.
 const TYPICAL_ALBEDO: f32 = 0.5;
+
+/// Probability that light comes to a place in the fur from one direction, where nothing is known of it.
+pub(super) const TYPICAL_OPEN: f32 = 0.2;
+
+/// Added to that probability where it is thought to be known: less makes noise where it is wrong, more asks in vain.
+const HIDDEN: f32 = 0.02;
 
 /// Shares of candidates: how many are drawn from the scattering model and from the environment, and
 /// how many of the former the continuing ray stands for.
@@ -129,61 +135,139 @@ pub(super) struct Candidate {
     pub(super) weight: f32,
     /// A number in `[0, 1)` that belongs to it and is not used yet.
     pub(super) chance: f32,
+    /// About the probability that light comes from there.
+    pub(super) open: f32,
 }
 
+/// What a place is thought to see of the environment.
+#[derive(Clone, Copy)]
+pub(super) struct Prospect<'a> {
+    environment: &'a Environment,
+    sight: Option<&'a Sight>,
+}
+
+impl<'a> Prospect<'a> {
+    pub(super) fn new(environment: &'a Environment, sight: Option<&'a Sight>) -> Self {
+        Self { environment, sight }
+    }
+
+    /// How much likelier than by the environment alone a bin is.
+    #[inline]
+    fn favor(&self, sight: &Sight, bin: usize) -> f32 {
+        sight.share(bin) / self.environment.bins()[bin]
+    }
+
+    /// About the probability that light comes from a bin that is likelier by a factor.
+    #[inline]
+    fn open(sight: &Sight, favor: f32) -> f32 {
+        (favor * sight.seen()).min(1.0)
+    }
+
+    /// The environment's radiance from a spot, the density of [`Self::draw`] there, and about the probability that light
+    /// comes from there.
+    #[inline]
+    pub(super) fn eval(&self, spot: Spot) -> (Rgb, f32, f32) {
+        let (light, pdf) = self.environment.eval_at(spot);
+        match self.sight {
+            Some(sight) if pdf > 0.0 => {
+                let favor = self.favor(sight, self.environment.bin_of(spot));
+                (light, pdf * favor, Self::open(sight, favor))
+            }
+            _ => (light, pdf, TYPICAL_OPEN),
+        }
+    }
+
+    /// A direction that is about to be drawn, the factor on its density, and about the probability that light comes from
+    /// there.
+    #[inline]
+    fn aim(&self, u: [f32; 2]) -> Option<(Aim, f32, f32)> {
+        let Some(sight) = self.sight else {
+            return Some((self.environment.aim(u)?, 1.0, TYPICAL_OPEN));
+        };
+        let (bin, rest) = sight.choose(u[0]);
+        let favor = self.favor(sight, bin);
+        let aim = self.environment.aim_in(bin, [rest, u[1]]);
+        Some((aim, favor, Self::open(sight, favor)))
+    }
+}
+
+/// Most candidates of a kind.
+const MOST: usize = 4;
+
 /// The candidates of a plan at one scattering point.
-pub(super) fn candidates(
-    scatter: &Scatter<'_>,
-    environment: &Environment,
+///
+/// All texels that they need are asked for before the first of them is read.
+pub(super) fn candidates<'a>(
+    scatter: &'a Scatter<'_>,
+    prospect: Prospect<'a>,
     plan: Plan,
     draws: &Draws,
     bounce: u32,
-) -> impl Iterator<Item = Candidate> {
-    let scattering = draws.net(bounce, Purpose::Scatter);
-    let lights = draws.net(bounce, Purpose::Light);
-    (0..plan.scattering + plan.lights).filter_map(move |j| {
-        // Each kind is an aligned run of its own net.
-        // What the sampling of one side knows already is not looked up again.
-        if j < plan.scattering {
-            let u = scattering.point(draws.run(plan.scattering) + j);
-            let s = scatter.sample([u[0], u[1], u[2]])?;
-            let (light, light_pdf) = environment.eval(s.dir);
-            Some(Candidate {
-                dir: s.dir,
-                density: s.weight * s.pdf,
-                light,
-                weight: 1.0 / plan.density(s.pdf, light_pdf),
-                chance: u[3],
-            })
-        } else {
-            let u = lights.point(draws.run(plan.lights) + j - plan.scattering);
-            let s = environment.sample([u[0], u[1]])?;
+) -> impl Iterator<Item = Candidate> + 'a {
+    // Each kind is an aligned run of its own net.
+    let points = |purpose, count: u32| {
+        let net = draws.net(bounce, purpose);
+        let first = draws.run(count);
+        (0..count).map(move |j| net.point(first + j))
+    };
+    let mut aims = [None; MOST];
+    for (aim, u) in aims.iter_mut().zip(points(Purpose::Light, plan.lights)) {
+        *aim = prospect.aim([u[0], u[1]]).map(|aim| (aim, u[2]));
+    }
+    let mut drawn = [None; MOST];
+    for (drawn, u) in drawn
+        .iter_mut()
+        .zip(points(Purpose::Scatter, plan.scattering))
+    {
+        let direction = scatter.sample([u[0], u[1], u[2]]);
+        *drawn = direction.map(|s| (s, prospect.environment.spot(s.dir), u[3]));
+    }
+    // What the sampling of one side knows already is not looked up again.
+    let lights = aims
+        .into_iter()
+        .flatten()
+        .filter_map(move |((aim, favor, open), chance)| {
+            let s = prospect.environment.draw(aim)?;
             let (density, scatter_pdf) = scatter.eval(s.dir);
             Some(Candidate {
                 dir: s.dir,
                 density,
                 light: s.radiance,
-                weight: 1.0 / plan.density(scatter_pdf, s.pdf),
-                chance: u[2],
+                weight: 1.0 / plan.density(scatter_pdf, s.pdf * favor),
+                chance,
+                open,
             })
+        });
+    let scattering = drawn.into_iter().flatten().map(move |(s, spot, chance)| {
+        let (light, light_pdf, open) = prospect.eval(spot);
+        Candidate {
+            dir: s.dir,
+            density: s.weight * s.pdf,
+            light,
+            weight: 1.0 / plan.density(s.pdf, light_pdf),
+            chance,
+            open,
         }
-    })
+    });
+    scattering.chain(lights)
 }
 
 /// The probability with which a ray that would bring `light` is sent; what it brings is divided by it.
 ///
-/// Most light is blocked in fur, so the noise of a ray is about what it would bring. Noise is least for a number
-/// of rays that are sent in proportion to that.
+/// Most light is blocked in fur, so the noise of a ray is about what it would bring times the root of the probability that
+/// it does. Noise is least for a number of rays that are sent in proportion to that.
 ///
-/// * `enough`: luminance from which on it is always sent.
-pub(super) fn chance_of_asking(light: Rgb, enough: f32) -> f32 {
-    (luminance(light) / enough).min(1.0)
+/// * `open`: about that probability. * `enough`: luminance from which on a ray is always sent where as much is open as
+///   usual.
+pub(super) fn chance_of_asking(light: Rgb, open: f32, enough: f32) -> f32 {
+    let favor = ((open + HIDDEN) * (1.0 / TYPICAL_OPEN)).sqrt();
+    (luminance(light) * favor / enough).min(1.0)
 }
 
 /// Draws one direction; its weight is scattering density times W.
 pub(super) fn resample(
     scatter: &Scatter<'_>,
-    environment: &Environment,
+    prospect: Prospect<'_>,
     plan: Plan,
     target: &Target,
     draws: &Draws,
@@ -191,7 +275,7 @@ pub(super) fn resample(
 ) -> Option<Direction> {
     let mut choice = draws.point(bounce, Purpose::Choice)[0];
     let (mut sum, mut kept) = (0.0f32, None);
-    for candidate in candidates(scatter, environment, plan, draws, bounce) {
+    for candidate in candidates(scatter, prospect, plan, draws, bounce) {
         let value = target.value(luminance(candidate.density), luminance(candidate.light));
         let weight = value * candidate.weight;
         // Also drops NaN.

@@ -223,6 +223,23 @@ fn samplers_agree_and_the_bare_product_does_not() {
     }
 }
 
+/// Where little light comes in and from few sides, rays to light are drawn far from evenly; their weights make up for it.
+#[test]
+fn guided_rays_bring_what_unguided_ones_do() {
+    let groom = ball(20_000, 10.0, 300.0);
+    let light = Environment::studio();
+    let mut s = scene(&groom, Rgb::splat(0.8), light, Backdrop::Plain(Rgb::ZERO));
+    assert!(s.outlook.is_some());
+    let guided = render(&s, 24, 256, Sampler::Qsir);
+    s.outlook = None;
+    let unguided = render(&s, 24, 256, Sampler::Qsir);
+    let [(a, a_noise), (b, b_noise)] = [&guided, &unguided].map(mean_of);
+    let z = (a - b) / a_noise.hypot(b_noise);
+    assert!(z.abs() < 4.0, "{a} {b}, z = {z}");
+    let noise = a_noise / b_noise;
+    assert!(noise < 0.97, "{noise}");
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bits_and_crops_match() {
     let groom = ball(2_000, 10.0, 200.0);

@@ -7,6 +7,7 @@ mod flatten;
 mod ground;
 mod joints;
 mod lamps;
+mod outlook;
 mod ribbon;
 mod strands;
 mod surface;
@@ -18,10 +19,12 @@ use crate::accel::AccelError;
 pub use backdrop::Backdrop;
 pub use camera::{Camera, View};
 pub use environment::{
-    Environment, EnvironmentError, EnvironmentSample, Sun, load as load_environment,
+    Aim, BINS, Environment, EnvironmentError, EnvironmentSample, Spot, Sun,
+    load as load_environment,
 };
 pub use ground::Ground;
 pub use lamps::{Emitter, EmitterShape, Lamp, LampChoice, LampSample, LampShape, MOST_LAMPS};
+pub use outlook::{Lookout, Outlook, Sight};
 pub use ribbon::Segment;
 pub use strands::{Leaving, StrandHit, Strands};
 pub use surface::{Surface, SurfaceHit};
@@ -73,6 +76,8 @@ pub struct Scene {
     pub ground: Option<Ground>,
     /// The light from far away.
     pub environment: Environment,
+    /// What comes of it to places in the fur; `None` where there is nothing to choose.
+    pub outlook: Option<Outlook>,
     /// Lamps beside it.
     pub lamps: Vec<Emitter>,
     /// What is behind the subject.
@@ -137,6 +142,7 @@ impl Scene {
             surface,
             ground: None,
             environment: parts.environment,
+            outlook: None,
             lamps: Vec::new(),
             backdrop: parts.backdrop,
             view: parts.view,
@@ -158,6 +164,12 @@ impl Scene {
                 count: scene.lamps.len(),
             });
         }
+        scene.outlook = Outlook::build(
+            &scene.strands,
+            scene.surface.as_ref(),
+            &scene.environment,
+            (lo, hi),
+        );
         scene.ground = parts.ground.map(|reflectance| Ground {
             reflectance,
             height: lo.y,

@@ -189,7 +189,17 @@ impl Strands {
     /// millimeters, half width in w.
     pub fn joints(&self) -> impl Iterator<Item = (u32, Vec4)> + '_ {
         let strands = 0..self.strands.len() as u32;
-        strands.flat_map(move |s| (0..self.joint_count(s)).map(move |j| (s, self.joint(s, j))))
+        strands.flat_map(move |s| self.joints_of(s).map(move |joint| (s, joint)))
+    }
+
+    /// Number of strands.
+    pub(super) fn count(&self) -> usize {
+        self.strands.len()
+    }
+
+    /// Joints of a strand, by its index in the groom; none if it has no length.
+    pub(super) fn joints_of(&self, strand: u32) -> impl Iterator<Item = Vec4> + '_ {
+        (0..self.joint_count(strand)).map(move |joint| self.joint(strand, joint))
     }
 
     /// The tree, whose leaves have the joints in the order in which they lie in memory.

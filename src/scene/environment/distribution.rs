@@ -63,28 +63,65 @@ impl Distribution {
         self.total
     }
 
-    /// Column and row of a texel and the place in it, 0..1 each, from two numbers in `[0, 1)`: texels are
-    /// drawn in proportion to their weights. Of no meaning where the total is zero.
-    ///
-    /// * `along`: weights of [`CELL`] texels in a row from this column and row on, 0 beyond the picture, to any one
-    ///   factor a row.
+    /// Cells in a row.
+    pub(super) fn across(&self) -> usize {
+        self.across
+    }
+
+    /// Share of all weight of each cell, in rows.
+    pub(super) fn shares(&self) -> Vec<f64> {
+        let share = |sums: &[f64], i: usize| sums[i] - if i == 0 { 0.0 } else { sums[i - 1] };
+        (self.columns.chunks_exact(self.across).enumerate())
+            .flat_map(|(y, columns)| {
+                let row = share(&self.rows, y);
+                (0..self.across).map(move |x| row * share(columns, x))
+            })
+            .collect()
+    }
+
+    /// A cell by its weight from two numbers in `[0, 1)`, and what is left of them.
     #[inline]
-    pub(super) fn sample(
-        &self,
-        u: [f32; 2],
-        along: impl FnOnce(usize, usize) -> [f32; CELL],
-    ) -> ([usize; 2], [f32; 2]) {
+    pub(super) fn cell(&self, u: [f32; 2]) -> (usize, [f32; 2]) {
         let (row, v) = choose(&self.rows, f64::from(u[1]));
         let columns = &self.columns[row * self.across..(row + 1) * self.across];
         let (column, s) = choose(columns, f64::from(u[0]));
-        let (y, v) = choose_near(&self.cells[row * self.across + column], v as f32);
-        let (x0, y) = (column * CELL, row * CELL + y);
-        let mut weights = along(x0, y);
+        (row * self.across + column, [s as f32, v as f32])
+    }
+
+    /// A row of a cell by its weight.
+    #[inline]
+    pub(super) fn row(&self, cell: usize, [s, v]: [f32; 2]) -> Row {
+        let (y, v) = choose_near(&self.cells[cell], v);
+        Row {
+            column: cell % self.across * CELL,
+            row: cell / self.across * CELL + y,
+            rest: [s, v],
+        }
+    }
+}
+
+/// [`CELL`] texels of which one is about to be chosen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    /// Of the first of them.
+    pub(super) column: usize,
+    pub(super) row: usize,
+    /// Numbers in `[0, 1)`: for the texel, and the place from top to bottom.
+    rest: [f32; 2],
+}
+
+impl Row {
+    /// Column of a texel by its weight, and the place in it, 0..1 each. Of no meaning where all weights are zero.
+    ///
+    /// * `weights`: of its texels, to any one factor, 0 beyond the picture.
+    #[inline]
+    pub(super) fn texel(&self, mut weights: [f32; CELL]) -> (usize, [f32; 2]) {
         for i in 1..CELL {
             weights[i] += weights[i - 1];
         }
-        let (x, s) = choose_near(&weights, s as f32 * weights[CELL - 1]);
-        ([x0 + x, y], [s, v])
+        let [s, v] = self.rest;
+        let (x, s) = choose_near(&weights, s * weights[CELL - 1]);
+        (self.column + x, [s, v])
     }
 }
 
@@ -149,15 +186,14 @@ mod tests {
             let (net, n) = (Sobol::new(2), 1 << 21);
             for i in 0..n {
                 let u = net.point(i);
-                let along = |x0: usize, y: usize| {
-                    std::array::from_fn(|i| match x0 + i < width {
-                        true => weight(x0 + i, y) as f32,
-                        false => 0.0,
-                    })
-                };
-                let ([x, y], place) = chosen.sample([u[0], u[1]], along);
+                let (cell, rest) = chosen.cell([u[0], u[1]]);
+                let row = chosen.row(cell, rest);
+                let (x, place) = row.texel(std::array::from_fn(|i| match row.column + i < width {
+                    true => weight(row.column + i, row.row) as f32,
+                    false => 0.0,
+                }));
                 assert!(place.iter().all(|p| (0.0..1.0).contains(p)));
-                seen[y * width + x] += chosen.total() / f64::from(n);
+                seen[row.row * width + x] += chosen.total() / f64::from(n);
             }
             for (i, seen) in seen.iter().enumerate() {
                 let w = weight(i % width, i / width);

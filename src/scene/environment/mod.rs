@@ -5,18 +5,22 @@
 //! evenly inside, so the density of a direction is its luminance over the integral of luminance,
 //! and it is zero only where there is no light.
 
+mod bins;
 mod builtin;
 mod distribution;
 mod file;
 mod radiance_hdr;
 mod sky;
 
+pub use bins::BINS;
 pub use file::{EnvironmentError, load};
 pub use sky::Sun;
 
 use crate::color::{Rgb, luminance};
 use crate::math::quick::turns;
-use distribution::{CELL, Distribution};
+use crate::pages::Table;
+use bins::Bins;
+use distribution::{CELL, Distribution, Row};
 use glam::Vec3;
 use std::f64::consts::{PI, TAU};
 
@@ -26,9 +30,11 @@ pub struct Environment {
     width: usize,
     height: usize,
     /// Rows from the top, linear radiance.
-    texels: Vec<Rgb>,
+    texels: Table<Rgb>,
     /// Texels by luminance times solid angle.
     choice: Distribution,
+    /// The same light in few bins.
+    bins: Bins,
     /// Height (sine of elevation) of the upper edges of the rows, and of the lower of the last.
     edges: Vec<f64>,
     /// One over the integral of luminance over the sphere; 0 if all is black.
@@ -37,6 +43,17 @@ pub struct Environment {
     /// Cosine and sine of the turn about +Y.
     turn: [f32; 2],
 }
+
+/// A texel of an [`Environment`] that is about to be read.
+#[derive(Clone, Copy, Debug)]
+pub struct Spot {
+    row: usize,
+    column: usize,
+}
+
+/// A direction that is about to be drawn from an [`Environment`].
+#[derive(Clone, Copy, Debug)]
+pub struct Aim(Row);
 
 /// A direction drawn from an [`Environment`].
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +86,8 @@ impl Environment {
         Self {
             width,
             height,
-            texels,
+            texels: Table::new(texels),
+            bins: Bins::new(choice.across(), &choice.shares()),
             choice,
             edges,
             inverse_power: if power > 0.0 {
@@ -93,7 +111,7 @@ impl Environment {
     /// The same light, brighter by a factor >= 0.
     #[must_use]
     pub fn scaled(self, factor: f32) -> Self {
-        let texels = self.texels.iter().map(|t| *t * factor).collect();
+        let texels = self.texels.entries().iter().map(|t| *t * factor).collect();
         Self {
             turn: self.turn,
             ..Self::from_texels(self.width, self.height, texels)
@@ -124,7 +142,7 @@ impl Environment {
     /// times height over the upper half.
     pub fn irradiance_up(&self) -> Rgb {
         let mut sum = glam::DVec3::ZERO;
-        for (y, row) in self.texels.chunks_exact(self.width).enumerate() {
+        for (y, row) in self.texels.entries().chunks_exact(self.width).enumerate() {
             let (top, bottom) = (edge(y, self.height), edge(y + 1, self.height));
             let (top, bottom) = (top.max(0.0), bottom.max(0.0));
             let weight = 0.5 * (top * top - bottom * bottom) * TAU / self.width as f64;
@@ -136,7 +154,7 @@ impl Environment {
     /// This light weighted with its height above the horizon, which is what a level plane sees of
     /// it: sampling it draws directions by the product of light and cosine.
     pub fn above_horizon(&self) -> Self {
-        let mut texels = self.texels.clone();
+        let mut texels = self.texels.entries().to_vec();
         for (y, row) in texels.chunks_exact_mut(self.width).enumerate() {
             let (top, bottom) = (edge(y, self.height), edge(y + 1, self.height));
             let (above, over) = (top.max(0.0), bottom.max(0.0));
@@ -151,6 +169,12 @@ impl Environment {
 
     /// Radiance from a unit direction and the density with which [`Environment::sample`] draws it.
     pub fn eval(&self, dir: Vec3) -> (Rgb, f32) {
+        self.eval_at(self.spot(dir))
+    }
+
+    /// Where light from a unit direction is looked up; has it brought near, since reading it takes a while.
+    #[inline]
+    pub fn spot(&self, dir: Vec3) -> Spot {
         let [c, s] = self.turn;
         let (x, z) = (c * dir.x - s * dir.z, c * dir.z + s * dir.x);
         // Turns, to the 24 bits that a direction has.
@@ -158,7 +182,27 @@ impl Environment {
         let down = 2.0 * turns((x * x + z * z).sqrt(), dir.y);
         let column = ((across * self.width as f32) as usize).min(self.width - 1);
         let row = ((down * self.height as f32) as usize).min(self.height - 1);
-        self.texel(row, column)
+        self.texels.fetch(row * self.width + column);
+        Spot { row, column }
+    }
+
+    /// As [`Self::eval`].
+    #[inline]
+    pub fn eval_at(&self, spot: Spot) -> (Rgb, f32) {
+        let radiance = self.texels[spot.row * self.width + spot.column];
+        (radiance, luminance(radiance) * self.inverse_power)
+    }
+
+    /// Share of all light in each bin of directions, > 0; at most [`BINS`].
+    pub fn bins(&self) -> &[f32] {
+        self.bins.shares()
+    }
+
+    /// The bin of a spot that has light.
+    #[inline]
+    pub fn bin_of(&self, spot: Spot) -> usize {
+        let cell = spot.row / CELL * self.choice.across() + spot.column / CELL;
+        self.bins.of_cell(cell)
     }
 
     /// Radiance interpolated between texels, for eyes only: light transport uses [`Self::eval`].
@@ -177,20 +221,60 @@ impl Environment {
 
     /// Draws a direction by luminance from two numbers in `[0, 1)`; `None` if all is black.
     pub fn sample(&self, u: [f32; 2]) -> Option<EnvironmentSample> {
+        self.draw(self.aim(u)?)
+    }
+
+    /// The same within a bin. The density is that of all bins.
+    pub fn sample_in(&self, bin: usize, u: [f32; 2]) -> Option<EnvironmentSample> {
+        self.draw(self.aim_in(bin, u))
+    }
+
+    /// The first half of [`Self::sample`]; has what the second one reads brought near.
+    #[inline]
+    pub fn aim(&self, u: [f32; 2]) -> Option<Aim> {
         if self.inverse_power <= 0.0 {
             return None;
         }
-        let along = |column: usize, row: usize| {
-            let rest = &self.texels[row * self.width + column..(row + 1) * self.width];
-            let mut weights = [0.0; CELL];
-            for (weight, texel) in weights.iter_mut().zip(rest) {
-                *weight = luminance(*texel);
+        let (cell, rest) = self.choice.cell(u);
+        Some(self.aim_at(cell, rest))
+    }
+
+    /// The first half of [`Self::sample_in`].
+    #[inline]
+    pub fn aim_in(&self, bin: usize, u: [f32; 2]) -> Aim {
+        let (cell, rest) = self.bins.cell(bin, u[0]);
+        self.aim_at(cell, [rest, u[1]])
+    }
+
+    #[inline]
+    fn aim_at(&self, cell: usize, rest: [f32; 2]) -> Aim {
+        let row = self.choice.row(cell, rest);
+        let first = row.row * self.width + row.column;
+        self.texels.fetch(first);
+        self.texels
+            .fetch((first + CELL - 1).min(self.width * self.height - 1));
+        Aim(row)
+    }
+
+    /// The second half of [`Self::sample`].
+    #[inline]
+    pub fn draw(&self, Aim(row): Aim) -> Option<EnvironmentSample> {
+        let first = row.row * self.width;
+        let weights = std::array::from_fn(|i| {
+            let column = row.column + i;
+            if column < self.width {
+                luminance(self.texels[first + column])
+            } else {
+                0.0
             }
-            weights
-        };
-        let ([column, row], [s, v]) = self.choice.sample(u, along);
-        let (radiance, pdf) = self.texel(row, column);
-        let up = self.edges[row] - f64::from(v) * (self.edges[row] - self.edges[row + 1]);
+        });
+        let (column, [s, v]) = row.texel(weights);
+        let (radiance, pdf) = self.eval_at(Spot {
+            row: row.row,
+            column,
+        });
+        let [top, bottom] = [self.edges[row.row], self.edges[row.row + 1]];
+        let up = top - f64::from(v) * (top - bottom);
         let azimuth = ((column as f64 + f64::from(s)) / self.width as f64 - 0.5) * TAU;
         let flat = (1.0 - up * up).max(0.0).sqrt() as f32;
         let (sin, cos) = (azimuth as f32).sin_cos();
@@ -198,11 +282,6 @@ impl Environment {
         let [c, s] = self.turn;
         let dir = Vec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
         (pdf > 0.0).then_some(EnvironmentSample { dir, radiance, pdf })
-    }
-
-    fn texel(&self, row: usize, column: usize) -> (Rgb, f32) {
-        let radiance = self.texels[row * self.width + column];
-        (radiance, luminance(radiance) * self.inverse_power)
     }
 
     /// Picture coordinates in texels.
@@ -277,7 +356,8 @@ mod tests {
             let mut expected = vec![0.0; nx * ny];
             for y in 0..fy {
                 for x in 0..fx {
-                    let (_, pdf) = env.texel(y * env.height / fy, x * env.width / fx);
+                    let (row, column) = (y * env.height / fy, x * env.width / fx);
+                    let (_, pdf) = env.eval_at(Spot { row, column });
                     let cell = y * ny / fy * nx + x * nx / fx;
                     expected[cell] += f64::from(pdf) * band(y, fy) * TAU / fx as f64;
                 }
