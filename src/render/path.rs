@@ -191,6 +191,8 @@ impl Integrator<'_> {
                 }
                 throughput /= survival;
             }
+            // Asked for before it is known whether the ray escapes: many do.
+            let spot = environment.spot(direction.dir);
             let (ray, leaving) = scatter.leave(direction.dir);
             out.rays += 1;
             let hit = self.scene.closest(&ray, leaving);
@@ -203,7 +205,7 @@ impl Integrator<'_> {
                 if on_floor {
                     return sum;
                 }
-                let (light, light_pdf, _) = prospect.eval(environment.spot(ray.dir));
+                let (light, light_pdf, _) = prospect.eval(spot);
                 return sum
                     + throughput * light * self.escape_weight(depth, direction.pdf, light_pdf);
             };
