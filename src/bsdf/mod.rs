@@ -109,6 +109,11 @@ impl Bsdf<'_> {
         }
     }
 
+    /// Whether drawing a direction costs much more than evaluating one: a table is searched for it.
+    pub fn is_dear_to_draw(&self) -> bool {
+        matches!(self, Self::Table(_))
+    }
+
     /// Share of light leaving along `wo` under even illumination: the integral of `density` over
     /// `wi`.
     pub fn albedo(&self) -> Rgb {

@@ -220,7 +220,7 @@ fn light_asked_for_by_chance_keeps_its_mean() {
             rendering.run(None, &Silent, &Cancel::default());
             rendering.film()
         };
-        let (all, few) = (with(0.0), with(20.0));
+        let (all, few) = (with(0.0), with(15.0));
         let saved = 1.0 - few.report.rays as f64 / all.report.rays as f64;
         assert!(saved > 0.1, "{name}: {saved}");
         let (truth, truth_error) = mean_of(&plain);

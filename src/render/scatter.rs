@@ -134,6 +134,14 @@ impl<'a> Scatter<'a> {
         }
     }
 
+    /// Whether [`Self::sample`] costs much more than [`Self::eval`].
+    pub(super) fn is_dear_to_draw(&self) -> bool {
+        match &self.kind {
+            Kind::Strand { bsdf, .. } => bsdf.is_dear_to_draw(),
+            Kind::Matte { .. } => false,
+        }
+    }
+
     /// A ray from here, and the strand it has to leave.
     pub(super) fn leave(&self, dir: Vec3) -> (Ray, Option<Leaving>) {
         match &self.kind {
