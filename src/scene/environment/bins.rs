@@ -42,7 +42,7 @@ impl Rectangle {
         ]
     }
 
-    /// In two across its longer side; `None` if it is one cell.
+    /// In two of about the same light, across its longer side; `None` if it is one cell.
     fn halves(self, across: usize, down: usize, power: &[f64]) -> Option<[Self; 2]> {
         let [width, height] = self.size(across, down);
         let is_single = |[from, to]: [usize; 2]| to - from == 1;
@@ -78,12 +78,23 @@ impl Rectangle {
             }
         };
         let [from, to] = if by_columns { self.columns } else { self.rows };
-        let light = |r: Self| r.cells(across).map(|c| power[c]).sum::<f64>();
-        let unevenness = |at: &usize| {
-            let [a, b] = cut(*at).map(light);
-            (a - b).abs()
+        let mut lines = vec![0.0; to - from];
+        for cell in self.cells(across) {
+            let line = if by_columns {
+                cell % across
+            } else {
+                cell / across
+            };
+            lines[line - from] += power[cell];
+        }
+        let all: f64 = lines.iter().sum();
+        let mut before = 0.0;
+        let unevenness = |at: usize| {
+            before += lines[at - 1 - from];
+            (at, (2.0 * before - all).abs())
         };
-        let even = (from + 1..to).min_by(|a, b| unevenness(a).total_cmp(&unevenness(b)))?;
+        let cuts = (from + 1..to).map(unevenness);
+        let (even, _) = cuts.min_by(|a, b| a.1.total_cmp(&b.1))?;
         Some(cut(even))
     }
 }
@@ -105,12 +116,19 @@ impl Bins {
         while bins.len() < BINS {
             let worth = |&(r, power): &(Rectangle, f64)| {
                 let [width, height] = r.size(across, down);
-                power * width.hypot(height)
+                let is_single = r.cells(across).nth(1).is_none();
+                if is_single {
+                    0.0
+                } else {
+                    power * width.hypot(height)
+                }
             };
-            let split = (bins.iter().enumerate())
-                .filter_map(|(i, bin)| Some((i, worth(bin), bin.0.halves(across, down, power)?)))
-                .max_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((widest, _, halves)) = split.filter(|s| s.1 > 0.0) else {
+            let worths = bins.iter().map(worth).enumerate();
+            let Some((widest, most)) = worths.max_by(|a, b| a.1.total_cmp(&b.1)) else {
+                break;
+            };
+            let halves = bins[widest].0.halves(across, down, power);
+            let Some(halves) = halves.filter(|_| most > 0.0) else {
                 break;
             };
             bins.swap_remove(widest);

@@ -25,7 +25,7 @@ const DIRECTIONS: [[f32; 2]; 4] = [
 ];
 
 /// Share of directions that is drawn as if nothing were in the way, since a cell does not know its brightest
-/// places: noise where it errs is at most this times as low.
+/// places: where it errs a direction is at most ten times as rare as without it.
 const UNGUIDED: f32 = 0.1;
 
 /// Share of all light below which it does not matter where it comes from.
