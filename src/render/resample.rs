@@ -165,7 +165,7 @@ impl<'a> Prospect<'a> {
         (favor * sight.seen()).min(1.0)
     }
 
-    /// The environment's radiance from a spot, the density of [`Self::draw`] there, and about the probability that light
+    /// The environment's radiance from a spot, the density of what is drawn there, and about the probability that light
     /// comes from there.
     #[inline]
     pub(super) fn eval(&self, spot: Spot) -> (Rgb, f32, f32) {

@@ -186,7 +186,7 @@ impl Walks {
         (self.free(simd, walking & !lost, alpha, rng), lost)
     }
 
-    /// Normals of the facets, against the walks. See [`super::super::microfacet::visible_normal`].
+    /// Normals of the facets, against the walks. See `bake::microfacet`.
     #[inline(always)]
     fn normals(&self, simd: Avx512, walking: Mask, alpha: F64x8, rng: &mut RngLanes) -> Vectors {
         let (zero, one) = (simd.all(0.0), simd.all(1.0));

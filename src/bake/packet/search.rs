@@ -175,7 +175,7 @@ impl Flock<'_> {
 
     /// What a group's photons are where they have met a boundary.
     ///
-    /// * `side`: of [`SIDES`], two more at a riser.
+    /// * `side`: of [`super::SIDES`], two more at a riser.
     #[inline(always)]
     fn go(&self, rays: &Rays, group: &Group, hits: &Hits, side: u64) -> Went {
         let simd = self.packets.simd;

@@ -1,4 +1,4 @@
-//! Eight rays through the cells of the shell: [`Scales::march`] lane by lane, with the same bits.
+//! Eight rays through the cells of the shell: `fiber::march` lane by lane, with the same bits.
 
 use super::super::crossing::LAST_STEP;
 use super::super::march::AXIAL;

@@ -3,7 +3,7 @@
 use super::fur::{Fur, Grid};
 use glam::Vec3;
 
-/// Scratch space of [`sweep`], kept from direction to direction.
+/// Scratch space of a sweep, kept from direction to direction.
 pub(super) struct Sweep {
     /// What each cell lets through.
     through: Vec<f32>,
