@@ -1,5 +1,6 @@
 //! The cells of the shell in which eight rays are: [`Scales`]' own search for them, lane by lane.
 
+use super::super::march::Side;
 use super::super::scales::seek::{ANGLE_STEPS, Z_STEPS};
 use super::super::scales::{Scales, Sector, Strip};
 use crate::math::lanes::{Avx512, F64x8, LANES, Mask, Row, U64x8, Vectors};
@@ -230,6 +231,15 @@ impl<'a> Cells<'a> {
             (self.cos[0] * w - a * wy) * inverse,
         ];
         (a / w, du)
+    }
+
+    /// See `Scales::is_clear`.
+    #[inline(always)]
+    pub(super) fn is_clear(&self, rho2: F64x8, side: Side) -> Mask {
+        match side {
+            Side::Inside => rho2.le(self.simd.all(self.scales.within2)),
+            Side::Outside => rho2.ge(self.simd.all(self.scales.beyond2)),
+        }
     }
 
     /// See [`Scales::face_gradient`].

@@ -1,7 +1,7 @@
 //! Eight rays through the cells of the shell: `fiber::march` lane by lane, with the same bits.
 
 use super::super::crossing::LAST_STEP;
-use super::super::march::AXIAL;
+use super::super::march::{AXIAL, Side};
 use super::cells::{Cells, Pair};
 use super::rays::UnitRays;
 use crate::math::lanes::{Avx512, F64x8, Mask, U64x8, Vectors};
@@ -81,22 +81,22 @@ struct State {
     r0: F64x8,
 }
 
-/// Follows rays from `t` in `cells` inside the surface or outside it up to `limit`.
+/// Follows rays from `t` on one side of the surface up to `limit`.
+///
+/// * `start`: the cells in which they are, and what of these they start on.
 #[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "what a march is of")]
 pub(super) fn march(
     simd: Avx512,
     lanes: Mask,
     ray: &UnitRays,
     t: F64x8,
-    mut cells: Cells<'_>,
-    outside: bool,
-    mut on: StartOn,
+    start: (Cells<'_>, StartOn),
+    side: Side,
     limit: F64x8,
-    clear2: f64,
 ) -> Marched {
+    let (mut cells, mut on) = start;
     let (zero, one) = (simd.all(0.0), simd.all(1.0));
-    let sign = if outside { 1.0 } else { -1.0 };
+    let sign = if side == Side::Outside { 1.0 } else { -1.0 };
     // Which way round the axis a ray goes. See Turn.
     let turn = ray.at.x * ray.by.y - ray.at.y * ray.by.x;
     let second = turn.gt(zero);
@@ -149,10 +149,7 @@ pub(super) fn march(
         walking = walking & length.lt(simd.all(AXIAL));
         let end = ray.at(t + length);
         let c_end = end.x * end.x + end.y * end.y;
-        let clear = match outside {
-            true => c_end.ge(simd.all(clear2)),
-            false => c_end.le(simd.all(clear2)),
-        };
+        let clear = cells.is_clear(c_end, side);
         let passes = walking & limited & on.face & clear;
         through = through | passes;
         walking = walking & !passes;
@@ -243,9 +240,9 @@ pub(super) fn march(
         strip: riser_strip.or(riser, cells.strip),
         face,
         riser,
-        solid_below: match outside {
-            true => riser & !riser_up,
-            false => riser & riser_up,
+        solid_below: match side {
+            Side::Outside => riser & !riser_up,
+            Side::Inside => riser & riser_up,
         },
         through,
     }

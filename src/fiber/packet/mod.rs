@@ -10,6 +10,7 @@ mod state;
 pub(super) use cells::Shell;
 
 use super::cortex::Pigment;
+use super::march::Side;
 use super::scales::Scales;
 use super::section::Section;
 use super::surface::Surface;
@@ -44,6 +45,16 @@ pub(crate) struct Hits {
     pub(crate) state: U64x8,
 }
 
+/// Where rays in the cortex are on the circle within all scales and on the one around all.
+struct Within {
+    from: F64x8,
+    to: F64x8,
+    /// Those that are within all scales now or later.
+    inner: Mask,
+    /// The way to the circle around all.
+    leave: F64x8,
+}
+
 /// The outer surface of a fiber, for rays eight at a time.
 #[derive(Clone, Copy)]
 pub(crate) struct PacketShell<'a> {
@@ -72,21 +83,8 @@ impl<'a> PacketShell<'a> {
         let unit = UnitRays::new(self.section, near.origin, near.dir);
         let (t0, limit, lanes, gone) = self.outside(rays.lanes, &unit);
         let lanes = lanes & !far.axial(simd);
-        // Lanes that are not asked for look at a place that exists.
-        let t0 = t0.or(lanes, zero);
-        let cells = Cells::locate(simd, scales, unit.at(t0));
-        let on = StartOn::NOTHING;
-        let marched = march(
-            simd,
-            lanes,
-            &unit,
-            t0,
-            cells,
-            true,
-            on,
-            limit,
-            scales.beyond2,
-        );
+        let (t0, start) = self.locate(&unit, lanes, t0);
+        let marched = march(simd, lanes, &unit, t0, start, Side::Outside, limit);
         let mut hits = self.hits(&near, marched);
         hits.t = hits.t + ahead;
         hits.through = hits.through | gone;
@@ -135,21 +133,10 @@ impl<'a> PacketShell<'a> {
     /// Rays outside that start on the surface: what they meet of it, or that they leave it.
     #[inline(always)]
     pub(crate) fn enter(&self, rays: &Rays) -> Hits {
-        let (simd, scales) = (self.simd, self.scales);
         let unit = UnitRays::new(self.section, rays.origin, rays.dir);
         let (t0, limit, lanes, gone) = self.outside(rays.lanes, &unit);
-        let (cells, on) = self.start(&unit, t0, rays.from, true);
-        let marched = march(
-            simd,
-            lanes,
-            &unit,
-            t0,
-            cells,
-            true,
-            on,
-            limit,
-            scales.beyond2,
-        );
+        let start = self.start(&unit, t0, rays.from, Side::Outside);
+        let marched = march(self.simd, lanes, &unit, t0, start, Side::Outside, limit);
         let mut hits = self.hits(rays, marched);
         hits.through = hits.through | gone;
         hits
@@ -162,25 +149,14 @@ impl<'a> PacketShell<'a> {
         let (simd, scales) = (self.simd, self.scales);
         let zero = simd.all(0.0);
         let unit = UnitRays::new(self.section, rays.origin, rays.dir);
-        let (t0, t1, within) = unit.inside_circle(simd, scales.rho_min);
-        let inner = within & t1.gt(zero);
-        let (_, end, near) = unit.inside_circle(simd, scales.rho_max);
-        let leave = end.max(zero).or(near, zero);
-        let limit = t0.max(zero).or(inner, leave);
+        let Within {
+            from, inner, leave, ..
+        } = self.within(&unit);
+        let limit = from.max(zero).or(inner, leave);
         let in_shell = unit.c.ge(simd.all(scales.rho_min * scales.rho_min)) | !inner;
         let lanes = rays.lanes & in_shell & !unit.axial(simd);
-        let (cells, on) = self.start(&unit, zero, rays.from, false);
-        let marched = march(
-            simd,
-            lanes,
-            &unit,
-            zero,
-            cells,
-            false,
-            on,
-            limit,
-            scales.within2,
-        );
+        let start = self.start(&unit, zero, rays.from, Side::Inside);
+        let marched = march(simd, lanes, &unit, zero, start, Side::Inside, limit);
         let mut hits = self.hits(rays, marched);
         hits.through = hits.through & inner;
         hits
@@ -189,36 +165,46 @@ impl<'a> PacketShell<'a> {
     /// Rays in the cortex that meet nothing within all scales: where they meet the surface.
     #[inline(always)]
     pub(crate) fn outward(&self, rays: &Rays) -> Hits {
-        let (simd, scales) = (self.simd, self.scales);
-        let zero = simd.all(0.0);
+        let simd = self.simd;
         let unit = UnitRays::new(self.section, rays.origin, rays.dir);
-        let (_, t1, within) = unit.inside_circle(simd, scales.rho_min);
-        let (_, end, near) = unit.inside_circle(simd, scales.rho_max);
-        let leave = end.max(zero).or(near, zero);
-        let lanes = rays.lanes & within & t1.gt(zero) & !unit.axial(simd);
-        // Lanes that are not asked for look at a place that exists.
-        let t1 = t1.or(lanes, zero);
-        let cells = Cells::locate(simd, scales, unit.at(t1));
-        let on = StartOn::NOTHING;
-        let marched = march(
-            simd,
-            lanes,
-            &unit,
-            t1,
-            cells,
-            false,
-            on,
-            leave.max(t1),
-            scales.within2,
-        );
+        let Within {
+            to, inner, leave, ..
+        } = self.within(&unit);
+        let lanes = rays.lanes & inner & !unit.axial(simd);
+        let (to, start) = self.locate(&unit, lanes, to);
+        let limit = leave.max(to);
+        let marched = march(simd, lanes, &unit, to, start, Side::Inside, limit);
         let mut hits = self.hits(rays, marched);
         hits.through = Mask::NONE;
         hits
     }
 
+    /// Where rays in the cortex are within all scales, and where they leave the shell.
+    #[inline(always)]
+    fn within(&self, unit: &UnitRays) -> Within {
+        let (simd, scales) = (self.simd, self.scales);
+        let zero = simd.all(0.0);
+        let (from, to, within) = unit.inside_circle(simd, scales.rho_min);
+        let (_, end, near) = unit.inside_circle(simd, scales.rho_max);
+        Within {
+            from,
+            to,
+            inner: within & to.gt(zero),
+            leave: end.max(zero).or(near, zero),
+        }
+    }
+
+    /// The cells that rays come to from elsewhere at `t`. Lanes that are not asked for look at a place that exists.
+    #[inline(always)]
+    fn locate(&self, unit: &UnitRays, lanes: Mask, t: F64x8) -> (F64x8, (Cells<'a>, StartOn)) {
+        let t = t.or(lanes, self.simd.all(0.0));
+        let cells = Cells::locate(self.simd, self.scales, unit.at(t));
+        (t, (cells, StartOn::NOTHING))
+    }
+
     /// The cells in which rays start, and what of these the start lies on. See `Scales::start`.
     #[inline(always)]
-    fn start(&self, unit: &UnitRays, t: F64x8, from: U64x8, outside: bool) -> (Cells<'a>, StartOn) {
+    fn start(&self, unit: &UnitRays, t: F64x8, from: U64x8, side: Side) -> (Cells<'a>, StartOn) {
         let (simd, scales) = (self.simd, self.scales);
         let low = simd.all_bits(0xffff);
         let kind = from.right::<32>();
@@ -232,9 +218,9 @@ impl<'a> PacketShell<'a> {
         let middle = 0.5 * (end + at(cells.begin, u));
         let z = middle.or(face, end);
         cells.shift = scales.period * ((p.z - z) / scales.period + 0.5).floor();
-        let (upper, lower) = match outside {
-            true => (riser, riser_of_lower),
-            false => (riser_of_lower, riser),
+        let (upper, lower) = match side {
+            Side::Outside => (riser, riser_of_lower),
+            Side::Inside => (riser_of_lower, riser),
         };
         if lower.any() {
             cells.up(lower);
