@@ -51,32 +51,6 @@ impl Rectangle {
             (false, false) => width >= height,
             (columns, _) => !columns,
         };
-        let cut = |at: usize| {
-            let Self { columns, rows } = self;
-            if by_columns {
-                [
-                    Self {
-                        columns: [columns[0], at],
-                        rows,
-                    },
-                    Self {
-                        columns: [at, columns[1]],
-                        rows,
-                    },
-                ]
-            } else {
-                [
-                    Self {
-                        rows: [rows[0], at],
-                        columns,
-                    },
-                    Self {
-                        rows: [at, rows[1]],
-                        columns,
-                    },
-                ]
-            }
-        };
         let [from, to] = if by_columns { self.columns } else { self.rows };
         let mut lines = vec![0.0; to - from];
         for cell in self.cells(across) {
@@ -95,7 +69,17 @@ impl Rectangle {
         };
         let cuts = (from + 1..to).map(unevenness);
         let (even, _) = cuts.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(cut(even))
+        let part = |range| match by_columns {
+            true => Self {
+                columns: range,
+                ..self
+            },
+            false => Self {
+                rows: range,
+                ..self
+            },
+        };
+        Some([part([from, even]), part([even, to])])
     }
 }
 
@@ -104,15 +88,12 @@ impl Bins {
     pub(super) fn new(across: usize, power: &[f64]) -> Self {
         let down = power.len() / across;
         let light = |r: Rectangle| r.cells(across).map(|c| power[c]).sum::<f64>();
-        let mut bins = vec![(
-            Rectangle {
-                columns: [0, across],
-                rows: [0, down],
-            },
-            0.0,
-        )];
-        bins[0].1 = light(bins[0].0);
-        let total = bins[0].1;
+        let whole = Rectangle {
+            columns: [0, across],
+            rows: [0, down],
+        };
+        let total = light(whole);
+        let mut bins = vec![(whole, total)];
         while bins.len() < BINS {
             let worth = |&(r, power): &(Rectangle, f64)| {
                 let [width, height] = r.size(across, down);

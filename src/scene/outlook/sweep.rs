@@ -84,7 +84,7 @@ impl Sweep {
     }
 }
 
-/// About `e^-x` for x >= 0, within 0.01 everywhere.
+/// About `e^-x` for x >= 0, within 0.012 everywhere.
 fn exp_minus(x: f32) -> f32 {
     1.0 / (1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6.0 + x * (1.0 / 24.0)))))
 }
