@@ -46,10 +46,6 @@ pub struct Sight {
     running: [u16; BINS],
 }
 
-/// A place that is about to be looked from.
-#[derive(Clone, Copy, Debug)]
-pub struct Lookout(u32);
-
 /// Sights of the cells that have something in them.
 pub struct Outlook {
     grid: Grid,
@@ -105,25 +101,19 @@ impl Outlook {
         })
     }
 
-    /// The cell to look from at a place, of those around it one by chance, so that no edges are seen. Has its sight
-    /// brought near.
+    /// What is seen from a place: from one of the cells around it, chosen by chance, so that no edges are seen. It is brought
+    /// near, since reading it takes a while. `None` where no strand and no skin is.
     ///
     /// * `u`: numbers in `[0, 1)`.
     #[inline]
-    pub fn at(&self, place: Vec3, [x, y, z]: [f32; 3]) -> Option<Lookout> {
+    pub fn sight(&self, place: Vec3, [x, y, z]: [f32; 3]) -> Option<&Sight> {
         let sight = |moved| {
             let cell = self.grid.cell(place, moved)?;
             Some(self.cells[cell]).filter(|&sight| sight != NONE)
         };
         let found = sight(Vec3::new(x, y, z) - 0.5).or_else(|| sight(Vec3::ZERO))?;
         self.sights.fetch(found as usize);
-        Some(Lookout(found))
-    }
-
-    /// What is seen.
-    #[inline]
-    pub fn sight(&self, lookout: Lookout) -> &Sight {
-        &self.sights[lookout.0 as usize]
+        Some(&self.sights[found as usize])
     }
 }
 

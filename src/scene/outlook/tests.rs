@@ -75,7 +75,7 @@ fn sights_are_what_rays_see() {
         let light = by_rays(&scene, place, &mut rng);
         let all: f32 = light.iter().sum();
         let u = std::array::from_fn(|_| rng.uniform_f32());
-        let sight = outlook.sight(outlook.at(place, u).unwrap());
+        let sight = outlook.sight(place, u).unwrap();
         (seen, by_ray) = (seen + sight.seen(), by_ray + all);
         for (bin, (&light, &share)) in light.iter().zip(shares).enumerate() {
             off += (sight.share(bin) - light / all.max(1e-6)).abs() / n as f32;
