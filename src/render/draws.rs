@@ -39,6 +39,15 @@ impl Draws {
         }
     }
 
+    /// Those of another way in which the path goes on from a bounce, counted from 1.
+    pub(super) fn copy(&self, bounce: u32, copy: u32) -> Self {
+        let way = (u64::from(bounce) << 32) | u64::from(copy);
+        Self {
+            key: hash64(self.key ^ way.wrapping_mul(0x9e37_79b9_7f4a_7c15)),
+            index: self.index,
+        }
+    }
+
     /// The scrambled net of a bounce and a purpose.
     pub(super) fn net(&self, bounce: u32, purpose: Purpose) -> Sobol {
         let place = (u64::from(bounce) << 3) | purpose as u64;

@@ -1,5 +1,6 @@
 //! Path tracing of a [`Scene`] to a [`Film`].
 
+mod direct;
 mod draws;
 mod film;
 mod filter;
@@ -9,6 +10,7 @@ mod rendering;
 mod resample;
 mod scatter;
 mod sums;
+mod worth;
 
 pub use film::{Crop, Film, NO_STRAND, Pixel, Report};
 pub use filter::{Filter, GAUSSIAN_SIGMA};
@@ -194,6 +196,8 @@ impl RenderJob {
             sampler: self.sampler,
             filter: self.filter,
             enough: path::ENOUGH * luminance(scene.mean_light()),
+            far_share: luminance(scene.environment.mean())
+                / luminance(scene.mean_light()).max(f32::MIN_POSITIVE),
             #[cfg(test)]
             bare_target: false,
         }

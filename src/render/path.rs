@@ -2,22 +2,13 @@
 
 use super::draws::{Draws, Purpose};
 use super::mattes::Seen;
-use super::resample::{
-    Plan, Prospect, TYPICAL_OPEN, Target, candidates, chance_of_asking, resample,
-};
+use super::resample::{Plan, Prospect, Target, resample};
 use super::scatter::{Direction, Scatter};
+use super::worth::Worth;
 use super::{Filter, Sampler};
 use crate::color::{Rgb, luminance};
-use crate::scene::{Camera, Ground, Hit, LampChoice, Scene};
+use crate::scene::{Camera, Ground, Hit, LampChoice, Look, Scene};
 use glam::{Vec2, Vec3};
-
-/// Scattering events before roulette may end a path. At 1 dark fur pays more in noise than it saves,
-/// at 8 pale fur takes 1.6 times the time for the same noise.
-const ROULETTE_FROM: u32 = 2;
-
-/// Share of the light at a scattering point that reaches the eye, below which paths may end there. At 1 pale fur has a sixth more
-/// error for an eighth less time, at 0.5 a tenth less for an eighth more.
-const WORTH_FOLLOWING: f32 = 0.7;
 
 /// Scattering events after which a path is cut whatever it carries. Lossless fur escapes long
 /// before: cut paths are counted and reported.
@@ -57,26 +48,44 @@ pub(super) struct Sample {
 }
 
 /// A scattering point of a path.
-struct Vertex<'a> {
-    scatter: &'a Scatter<'a>,
-    draws: &'a Draws,
+pub(super) struct Vertex<'a> {
+    pub(super) scatter: &'a Scatter<'a>,
+    pub(super) draws: &'a Draws,
     /// What light is thought to come here.
-    prospect: Prospect<'a>,
+    pub(super) prospect: Prospect<'a>,
     /// Scattering events before this one.
-    depth: u32,
+    pub(super) depth: u32,
     /// Share of what leaves here that reaches the eye.
-    throughput: Rgb,
+    pub(super) throughput: Rgb,
+    /// Ways in which the path goes on.
+    pub(super) copies: u32,
     /// Luminance at the eye from which on a ray is always sent for it.
-    enough: f32,
+    pub(super) enough: f32,
     /// Whether it is the first, on the floor.
-    on_floor: bool,
+    pub(super) on_floor: bool,
 }
 
 impl Vertex<'_> {
     /// Candidates for light straight from the environment.
-    fn plan(&self) -> Plan {
-        Plan::direct(self.depth, self.scatter.is_dear_to_draw())
+    pub(super) fn plan(&self) -> Plan {
+        Plan::direct(self.depth, self.scatter.is_dear_to_draw(), self.copies)
     }
+}
+
+/// A scattering point that a path has come to.
+struct Arrival<'a> {
+    scatter: Scatter<'a>,
+    look: Option<Look<'a>>,
+    throughput: Rgb,
+    copies: u32,
+}
+
+/// What all ways of a path have in common.
+struct Start<'a> {
+    /// The floor if it starts there.
+    floor: Option<&'a Ground>,
+    worth: Worth,
+    enough: f32,
 }
 
 /// Traces paths of one picture.
@@ -89,6 +98,8 @@ pub(super) struct Integrator<'a> {
     pub(super) filter: Filter,
     /// [`ENOUGH`] times the luminance of even light.
     pub(super) enough: f32,
+    /// Share of all light that comes from the environment.
+    pub(super) far_share: f32,
     /// Replaces the target of resampling, for the test of its bias.
     #[cfg(test)]
     pub(super) bare_target: bool,
@@ -142,100 +153,159 @@ impl Integrator<'_> {
             out.radiance = backdrop();
             if share > 0.0 {
                 // Times the share of its light that the subject leaves to the floor.
-                let light = self.trace(&scatter, Some(ground), &draws, &mut out);
                 let open = self.scene.open_floor(ground, scatter.position());
+                let light = self.trace(scatter, Some(ground), &draws, &mut out);
                 let left = light / open.max(Rgb::splat(f32::MIN_POSITIVE));
                 out.radiance *= Rgb::ONE.lerp(left, share);
             }
             return out;
         }
-        let light = self.trace(&scatter, None, &draws, &mut out);
-        out.radiance = light;
         out.first = Some(self.describe(&hit, &scatter));
+        out.radiance = self.trace(scatter, None, &draws, &mut out);
         out
     }
 
     /// Radiance that leaves a scattering point toward the viewer.
     ///
     /// * `floor`: the floor if the point is on it.
-    fn trace(
-        &self,
-        first: &Scatter<'_>,
+    fn trace<'s>(
+        &'s self,
+        first: Scatter<'s>,
         floor: Option<&Ground>,
         draws: &Draws,
         out: &mut Sample,
     ) -> Rgb {
-        let environment = &self.scene.environment;
+        let look = self.look(first.position(), draws, 0);
+        let worth = Worth::new(look.map(|look| self.glow(&look)));
+        let start = Start {
+            floor,
+            enough: self.enough * luminance(first.albedo()) * worth.brightness(),
+            worth,
+        };
+        let first = Arrival {
+            scatter: first,
+            look,
+            throughput: Rgb::ONE,
+            copies: 1,
+        };
+        self.follow(first, 0, &start, draws, out)
+    }
+
+    /// Light from a point on that a path has come to, at the eye.
+    ///
+    /// * `from`: scattering events before.
+    fn follow<'s>(
+        &'s self,
+        mut here: Arrival<'s>,
+        from: u32,
+        start: &Start<'_>,
+        draws: &Draws,
+        out: &mut Sample,
+    ) -> Rgb {
         let mut sum = Rgb::ZERO;
-        let mut throughput = Rgb::ONE;
-        let enough = self.enough * luminance(first.albedo());
-        let mut next;
-        let mut scatter = first;
-        for depth in 0..FAR_CAP {
-            let on_floor = floor.is_some() && depth == 0;
+        for depth in from..FAR_CAP {
+            let sight = here.look.map(|look| look.sight);
             let at = Vertex {
-                scatter,
+                scatter: &here.scatter,
                 draws,
-                prospect: self.prospect(scatter, draws, depth),
+                prospect: Prospect::new(&self.scene.environment, sight),
                 depth,
-                throughput,
-                enough,
-                on_floor,
+                throughput: here.throughput,
+                copies: here.copies,
+                enough: start.enough,
+                on_floor: start.floor.is_some() && depth == 0,
             };
-            sum += match floor {
-                Some(floor) if on_floor => self.floor_light(floor, &at, out),
+            sum += match start.floor {
+                Some(floor) if at.on_floor => self.floor_light(floor, &at, out),
                 _ => self.direct(&at, out),
             };
-            let lamps = self.lamps_from(scatter);
+            let lamps = self.lamps_from(&here.scatter);
             if let Some(lamps) = &lamps {
                 sum += self.lamp_light(lamps, &at, out);
             }
-            let Some(direction) = self.continue_from(scatter, draws, depth) else {
+            for copy in 1..at.copies {
+                let draws = draws.copy(depth, copy);
+                let (light, next) = self.go_on(&at, start, lamps.as_ref(), &draws, out);
+                sum += light;
+                if let Some(next) = next {
+                    sum += self.follow(next, depth + 1, start, &draws, out);
+                }
+            }
+            let (light, next) = self.go_on(&at, start, lamps.as_ref(), draws, out);
+            sum += light;
+            let Some(next) = next else {
                 return sum;
             };
-            throughput *= direction.weight;
-            if depth >= ROULETTE_FROM {
-                let survival = (throughput.max_element() / WORTH_FOLLOWING).min(1.0);
-                if draws.point(depth, Purpose::Choice)[1] >= survival {
-                    return sum;
-                }
-                throughput /= survival;
-            }
-            // Asked for before it is known whether the ray escapes: many do.
-            let spot = environment.spot(direction.dir);
-            let (ray, leaving) = scatter.leave(direction.dir);
-            out.rays += 1;
-            let hit = self.scene.closest(&ray, leaving);
-            if let Some(lamps) = &lamps {
-                let far = hit.as_ref().map_or(f32::INFINITY, Hit::distance);
-                let share = |pdf| self.lamp_shares(on_floor, pdf, direction.pdf)[1];
-                sum += throughput * lamps.met(&ray, far, share);
-            }
-            let Some(hit) = hit else {
-                if on_floor {
-                    return sum;
-                }
-                let (light, light_pdf, _) = at.prospect.eval(spot);
-                let share = self.escape_weight(&at, direction.pdf, light_pdf);
-                return sum + throughput * light * share;
-            };
-            let blend = draws.point(depth, Purpose::Choice)[2];
-            next = Scatter::new(self.scene, &ray, &hit, false, blend);
-            scatter = &next;
+            here = next;
         }
         out.capped = true;
         sum
     }
 
-    /// What light is thought to come to a scattering point.
-    fn prospect(&self, scatter: &Scatter<'_>, draws: &Draws, depth: u32) -> Prospect<'_> {
-        let sight = (self.scene.outlook.as_ref())
-            .filter(|_| self.sampler == Sampler::Qsir)
-            .and_then(|outlook| {
-                let [x, y, z, _] = draws.point(depth, Purpose::Outlook);
-                outlook.sight(scatter.position(), [x, y, z])
-            });
-        Prospect::new(&self.scene.environment, sight)
+    /// One of the ways in which a path goes on from a point: light that is met, at the eye, and where it comes to.
+    fn go_on(
+        &self,
+        at: &Vertex<'_>,
+        start: &Start<'_>,
+        lamps: Option<&LampChoice<'_>>,
+        draws: &Draws,
+        out: &mut Sample,
+    ) -> (Rgb, Option<Arrival<'_>>) {
+        let (depth, mut light) = (at.depth, Rgb::ZERO);
+        let Some(direction) = self.continue_from(at.scatter, draws, depth) else {
+            return (light, None);
+        };
+        let mut throughput = at.throughput * direction.weight / at.copies as f32;
+        let [_, chance, blend, _] = draws.point(depth, Purpose::Choice);
+        let survival = start.worth.before_ray(throughput, depth);
+        if chance >= survival {
+            return (light, None);
+        }
+        throughput /= survival;
+        // Asked for before it is known whether the ray escapes: many do.
+        let spot = self.scene.environment.spot(direction.dir);
+        let (ray, leaving) = at.scatter.leave(direction.dir);
+        out.rays += 1;
+        let hit = self.scene.closest(&ray, leaving);
+        if let Some(lamps) = lamps {
+            let far = hit.as_ref().map_or(f32::INFINITY, Hit::distance);
+            let share = |pdf| self.lamp_shares(at.on_floor, pdf, direction.pdf)[1];
+            light += throughput * lamps.met(&ray, far, share);
+        }
+        let Some(hit) = hit else {
+            if !at.on_floor {
+                let (radiance, light_pdf, _) = at.prospect.eval(spot);
+                let share = self.escape_weight(at, direction.pdf, light_pdf);
+                light += throughput * radiance * share;
+            }
+            return (light, None);
+        };
+        let depth = depth + 1;
+        let look = self.look(ray.origin + hit.distance() * ray.dir, draws, depth);
+        let glow = look.map(|look| self.glow(&look));
+        let fate = start.worth.on_arrival(throughput, glow, depth);
+        if draws.point(depth, Purpose::Choice)[3] >= fate.survival {
+            return (light, None);
+        }
+        let arrival = Arrival {
+            scatter: Scatter::new(self.scene, &ray, &hit, false, blend),
+            look,
+            throughput: throughput / fate.survival,
+            copies: fate.copies,
+        };
+        (light, Some(arrival))
+    }
+
+    /// What is known of the light at a place that a path comes to.
+    fn look(&self, place: Vec3, draws: &Draws, depth: u32) -> Option<Look<'_>> {
+        let outlook = (self.scene.outlook.as_ref()).filter(|_| self.sampler == Sampler::Qsir)?;
+        let [x, y, z, _] = draws.point(depth, Purpose::Outlook);
+        outlook.look(place, [x, y, z])
+    }
+
+    /// Mean radiance at a place over that where nothing is in the way: lamps are thought to light all places alike.
+    fn glow(&self, look: &Look<'_>) -> f32 {
+        1.0 + self.far_share * (look.glow - 1.0)
     }
 
     /// The direction in which the path goes on.
@@ -259,140 +329,6 @@ impl Integrator<'_> {
         Target::all(self.scene.mean_light(), depth)
     }
 
-    /// Light straight from the environment, at the eye.
-    fn direct(&self, at: &Vertex<'_>, out: &mut Sample) -> Rgb {
-        let Vertex {
-            scatter,
-            draws,
-            depth,
-            ..
-        } = *at;
-        let environment = &self.scene.environment;
-        match self.sampler {
-            Sampler::Bsdf | Sampler::QsirOneRay => Rgb::ZERO,
-            Sampler::Qsir => {
-                let mut sum = Rgb::ZERO;
-                for c in candidates(scatter, at.prospect, at.plan(), draws, depth) {
-                    let light = at.throughput * c.density * c.light * c.weight;
-                    let sent = chance_of_asking(light, c.open, at.enough);
-                    sum +=
-                        self.ask_by_chance(at, c.dir, f32::INFINITY, light, [c.chance, sent], out);
-                }
-                sum
-            }
-            Sampler::Env | Sampler::Mis => {
-                let u = draws.point(depth, Purpose::Light);
-                let Some(light) = environment.sample([u[0], u[1]]) else {
-                    return Rgb::ZERO;
-                };
-                let (density, scatter_pdf) = scatter.eval(light.dir);
-                let share = match self.sampler {
-                    Sampler::Mis => power(light.pdf, scatter_pdf),
-                    _ => 1.0,
-                };
-                let weight = at.throughput * density * light.radiance * (share / light.pdf);
-                self.unless_occluded(scatter, light.dir, f32::INFINITY, weight, out)
-            }
-        }
-    }
-
-    /// The lamps from a scattering point; `None` if there are none.
-    fn lamps_from(&self, scatter: &Scatter<'_>) -> Option<LampChoice<'_>> {
-        let lamps = &self.scene.lamps;
-        (!lamps.is_empty()).then(|| LampChoice::new(lamps, scatter.position()))
-    }
-
-    /// Light straight from a lamp, at the eye.
-    fn lamp_light(&self, lamps: &LampChoice<'_>, at: &Vertex<'_>, out: &mut Sample) -> Rgb {
-        let u = at.draws.point(at.depth, Purpose::Lamp);
-        let Some(lamp) = lamps.sample([u[0], u[1], u[2]]) else {
-            return Rgb::ZERO;
-        };
-        let (density, scatter_pdf) = at.scatter.eval(lamp.dir);
-        let [share, _] = self.lamp_shares(at.on_floor, lamp.pdf, scatter_pdf);
-        let light = at.throughput * density * lamp.radiance * (share / lamp.pdf);
-        match self.sampler {
-            Sampler::Qsir => {
-                let sent = chance_of_asking(light, TYPICAL_OPEN, at.enough);
-                self.ask_by_chance(at, lamp.dir, lamp.distance, light, [u[3], sent], out)
-            }
-            _ => self.unless_occluded(at.scatter, lamp.dir, lamp.distance, light, out),
-        }
-    }
-
-    /// How much of the light of lamps the rays that are sent to them bring, and how much of it the continuing
-    /// rays that meet them. Where continuing rays are resampled their density is not known.
-    fn lamp_shares(&self, on_floor: bool, lamp_pdf: f32, scatter_pdf: f32) -> [f32; 2] {
-        match self.sampler {
-            _ if on_floor => [1.0, 0.0],
-            Sampler::Bsdf => [0.0, 1.0],
-            Sampler::Env | Sampler::QsirOneRay => [1.0, 0.0],
-            Sampler::Qsir | Sampler::Mis => {
-                [power(lamp_pdf, scatter_pdf), power(scatter_pdf, lamp_pdf)]
-            }
-        }
-    }
-
-    /// Light straight from the environment to white paint on the floor, which has no other noise
-    /// than that of visibility.
-    fn floor_light(&self, floor: &Ground, at: &Vertex<'_>, out: &mut Sample) -> Rgb {
-        let u = at.draws.point(0, Purpose::Light);
-        match floor.sample(&self.scene.environment, [u[0], u[1]]) {
-            Some((dir, light)) => self.unless_occluded(at.scatter, dir, f32::INFINITY, light, out),
-            None => Rgb::ZERO,
-        }
-    }
-
-    /// As [`Self::unless_occluded`] on the average, but most rays that would bring little are not sent.
-    ///
-    /// * `chance`: a number in `[0, 1)`. * `sent`: the probability with which it is sent.
-    fn ask_by_chance(
-        &self,
-        at: &Vertex<'_>,
-        dir: Vec3,
-        far: f32,
-        light: Rgb,
-        [chance, sent]: [f32; 2],
-        out: &mut Sample,
-    ) -> Rgb {
-        // Also drops NaN.
-        if chance < sent {
-            self.unless_occluded(at.scatter, dir, far, light / sent, out)
-        } else {
-            Rgb::ZERO
-        }
-    }
-
-    fn unless_occluded(
-        &self,
-        scatter: &Scatter<'_>,
-        dir: Vec3,
-        far: f32,
-        light: Rgb,
-        out: &mut Sample,
-    ) -> Rgb {
-        if light.max_element() <= 0.0 {
-            return Rgb::ZERO;
-        }
-        let (ray, leaving) = scatter.leave(dir);
-        out.rays += 1;
-        if self.scene.occluded(&ray, far, leaving) {
-            Rgb::ZERO
-        } else {
-            light
-        }
-    }
-
-    /// How much of the environment's light an escaping path may bring that was not gathered before.
-    fn escape_weight(&self, at: &Vertex<'_>, scatter_pdf: f32, light_pdf: f32) -> f32 {
-        match self.sampler {
-            Sampler::Bsdf | Sampler::QsirOneRay => 1.0,
-            Sampler::Qsir => at.plan().escape_weight(scatter_pdf, light_pdf),
-            Sampler::Env => 0.0,
-            Sampler::Mis => power(scatter_pdf, light_pdf),
-        }
-    }
-
     fn describe(&self, hit: &Hit, scatter: &Scatter<'_>) -> FirstHit {
         let strands = &self.scene.strands;
         let (depth, strand) = match hit {
@@ -409,10 +345,4 @@ impl Integrator<'_> {
             root_uv: strand.map_or(Vec2::ZERO, |s| strands.root_uv(s.strand)),
         }
     }
-}
-
-/// The power heuristic with exponent 2 (Veach 1997).
-fn power(own: f32, other: f32) -> f32 {
-    let (a, b) = (own * own, other * other);
-    if a > 0.0 { a / (a + b) } else { 0.0 }
 }

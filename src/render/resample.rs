@@ -51,7 +51,9 @@ impl Plan {
     ///
     /// Half as many or twice as many from the environment are worth the same. Those from the scattering model are left to the
     /// continuing ray where they are dear: of tables they cost a quarter more than they gain, of analytic models a tenth less.
-    pub(super) fn direct(depth: u32, is_dear_to_draw: bool) -> Self {
+    ///
+    /// * `copies`: ways in which the path goes on.
+    pub(super) fn direct(depth: u32, is_dear_to_draw: bool, copies: u32) -> Self {
         let (scattering, lights) = match depth {
             0 => (2, 4),
             _ => (1, 2),
@@ -59,7 +61,7 @@ impl Plan {
         Self {
             scattering: if is_dear_to_draw { 0 } else { scattering },
             lights,
-            continuing: 1.0,
+            continuing: copies as f32,
         }
     }
 

@@ -240,6 +240,30 @@ fn guided_rays_bring_what_unguided_ones_do() {
     assert!(noise < 0.97, "{noise}");
 }
 
+/// However wrong it is known how bright it is in the fur, so that paths end and split at random: fur that takes no light
+/// stays invisible where all directions send as much, and other fur looks as it does where paths do neither.
+#[test]
+fn paths_that_end_and_split_bring_what_others_do() {
+    let white = Environment::from_texels(32, 16, vec![Rgb::ONE; 512]);
+    for (albedo, light) in [(1.0, white), (0.8, half_black())] {
+        let groom = ball(10_000, 10.0, 300.0);
+        let mut s = scene(&groom, Rgb::splat(albedo), light, Backdrop::Environment);
+        let mut rng = Rng::new(12, 0);
+        let outlook = s.outlook.as_mut().unwrap();
+        outlook.guess(|| 0.1 + 2.0 * rng.uniform_f32().powi(2));
+        let (mean, noise) = mean_of(&render(&s, 24, 512, Sampler::Qsir));
+        let (expected, error) = if albedo == 1.0 {
+            (1.0, 0.0)
+        } else {
+            s.outlook = None;
+            mean_of(&render(&s, 24, 512, Sampler::Qsir))
+        };
+        let z = (mean - expected) / noise.hypot(error);
+        assert!(z.abs() < 4.0, "{albedo}: {mean} {expected}, z = {z}");
+        assert!(noise < 0.006 * mean, "{albedo}: {noise}");
+    }
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bits_and_crops_match() {
     let groom = ball(2_000, 10.0, 200.0);

@@ -24,7 +24,7 @@ pub use environment::{
 };
 pub use ground::Ground;
 pub use lamps::{Emitter, EmitterShape, Lamp, LampChoice, LampSample, LampShape, MOST_LAMPS};
-pub use outlook::{Outlook, Sight};
+pub use outlook::{Look, Outlook, Sight};
 pub use ribbon::Segment;
 pub use strands::{Leaving, StrandHit, Strands};
 pub use surface::{Surface, SurfaceHit};

@@ -1,15 +1,18 @@
 //! How much of the environment's light comes to each place in the fur, roughly: where rays to light are worth
-//! sending. Nothing but noise depends on it.
+//! sending, and which paths are worth following. Nothing but noise depends on it.
 //!
-//! Light of each bin of the environment is swept through a grid of what the strands and the skin block.
+//! Light of each bin of the environment is swept through a grid of what the strands and the skin block; then what
+//! they send each other.
 
 mod fur;
+mod glow;
 mod sweep;
 
 use super::{BINS, Environment, Strands, Surface};
 use crate::pages::Table;
 use fur::{Fur, Grid};
 use glam::Vec3;
+use glow::glow;
 use rayon::prelude::*;
 use sweep::Sweep;
 
@@ -52,6 +55,17 @@ pub struct Outlook {
     /// Sight of each cell.
     cells: Vec<u32>,
     sights: Table<Sight>,
+    /// Mean radiance at each of them over that of the environment.
+    glow: Vec<f32>,
+}
+
+/// What is known of a place.
+#[derive(Clone, Copy)]
+pub struct Look<'a> {
+    /// What it sees of the environment.
+    pub sight: &'a Sight,
+    /// About the mean radiance there over that of the environment.
+    pub glow: f32,
 }
 
 impl Outlook {
@@ -87,6 +101,8 @@ impl Outlook {
             sum
         };
         let light: Vec<Vec<f32>> = (0..shares.len()).into_par_iter().map(of_bin).collect();
+        let seen = |i: usize| light.iter().map(|bin| bin[i]).sum();
+        let seen: Vec<f32> = (0..fur.cells.len()).map(seen).collect();
         let sights = (0..fur.cells.len())
             .map(|i| Sight::new(shares, |bin| light[bin][i]))
             .collect();
@@ -95,25 +111,35 @@ impl Outlook {
             cells[cell as usize] = i as u32;
         }
         Some(Self {
-            grid,
             cells,
             sights: Table::new(sights),
+            glow: glow(&grid, &fur, &seen),
+            grid,
         })
     }
 
-    /// What is seen from a place: from one of the cells around it, chosen by chance, so that no edges are seen. It is brought
-    /// near, since reading it takes a while. `None` where no strand and no skin is.
+    /// Any guess at how bright it is, for tests: nothing but noise may depend on it.
+    #[cfg(test)]
+    pub(crate) fn guess(&mut self, mut glow: impl FnMut() -> f32) {
+        self.glow.iter_mut().for_each(|of_cell| *of_cell = glow());
+    }
+
+    /// What is known of a place: of one of the cells around it, chosen by chance, so that no edges are seen. Its sight is
+    /// brought near, since reading it takes a while. `None` where no strand and no skin is.
     ///
     /// * `u`: numbers in `[0, 1)`.
     #[inline]
-    pub fn sight(&self, place: Vec3, [x, y, z]: [f32; 3]) -> Option<&Sight> {
+    pub fn look(&self, place: Vec3, [x, y, z]: [f32; 3]) -> Option<Look<'_>> {
         let sight = |moved| {
             let cell = self.grid.cell(place, moved)?;
             Some(self.cells[cell]).filter(|&sight| sight != NONE)
         };
-        let found = sight(Vec3::new(x, y, z) - 0.5).or_else(|| sight(Vec3::ZERO))?;
-        self.sights.fetch(found as usize);
-        Some(&self.sights[found as usize])
+        let found = sight(Vec3::new(x, y, z) - 0.5).or_else(|| sight(Vec3::ZERO))? as usize;
+        self.sights.fetch(found);
+        Some(Look {
+            sight: &self.sights[found],
+            glow: self.glow[found],
+        })
     }
 }
 

@@ -6,7 +6,7 @@ use glam::Vec3;
 /// Scratch space of a sweep, kept from direction to direction.
 pub(super) struct Sweep {
     /// What each cell lets through.
-    through: Vec<f32>,
+    pub(super) through: Vec<f32>,
     /// What comes to each cell.
     pub(super) light: Vec<f32>,
     /// What leaves the slice before, and this one; with a border all around.
@@ -30,6 +30,20 @@ impl Sweep {
     ///
     /// What a cell itself blocks is left out: the brightest places in it matter most, and see past it.
     pub(super) fn run(&mut self, grid: &Grid, fur: &Fur, dir: Vec3) {
+        self.run_with(grid, fur, dir, 1.0, |_, _| 0.0);
+    }
+
+    /// The same with what cells send in the direction themselves.
+    ///
+    /// * `outside`: light that comes in. * `sent`: by a cell that blocks a share of the light.
+    pub(super) fn run_with(
+        &mut self,
+        grid: &Grid,
+        fur: &Fur,
+        dir: Vec3,
+        outside: f32,
+        sent: impl Fn(usize, f32) -> f32,
+    ) {
         for (&cell, depth) in fur.cells.iter().zip(fur.depths(dir)) {
             self.through[cell as usize] = exp_minus(depth);
         }
@@ -51,7 +65,7 @@ impl Sweep {
         let width = counts[u] + 3;
         let open = |slice: &mut Vec<f32>| {
             slice.clear();
-            slice.resize(width * (counts[v] + 3), 1.0);
+            slice.resize(width * (counts[v] + 3), outside);
         };
         open(&mut self.before);
         open(&mut self.now);
@@ -76,7 +90,8 @@ impl Sweep {
                     let light = a + part_v * (b - a);
                     let cell = cells + i * strides[u];
                     self.light[cell] = light;
-                    *out = light * self.through[cell];
+                    let through = self.through[cell];
+                    *out = light * through + sent(cell, 1.0 - through);
                 }
             }
             std::mem::swap(&mut self.before, &mut self.now);

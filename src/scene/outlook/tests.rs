@@ -8,6 +8,10 @@ use glam::Vec2;
 
 /// Straight strands that go up from a square of 20 mm, random places and lengths.
 fn meadow(strands: u32, width_um: f32) -> Scene {
+    meadow_in(Environment::studio(), strands, width_um)
+}
+
+fn meadow_in(environment: Environment, strands: u32, width_um: f32) -> Scene {
     let mut groom = Groom {
         offsets: vec![0],
         classes: vec!["guard".into()],
@@ -33,7 +37,7 @@ fn meadow(strands: u32, width_um: f32) -> Scene {
         groom: &groom,
         materials: vec![HairMaterial::Isotropic(Rgb::ONE)],
         skin: None,
-        environment: Environment::studio(),
+        environment,
         lamps: &[],
         backdrop: Backdrop::Plain(Rgb::ZERO),
         ground: None,
@@ -75,7 +79,7 @@ fn sights_are_what_rays_see() {
         let light = by_rays(&scene, place, &mut rng);
         let all: f32 = light.iter().sum();
         let u = std::array::from_fn(|_| rng.uniform_f32());
-        let sight = outlook.sight(place, u).unwrap();
+        let sight = outlook.look(place, u).unwrap().sight;
         (seen, by_ray) = (seen + sight.seen(), by_ray + all);
         for (bin, (&light, &share)) in light.iter().zip(shares).enumerate() {
             off += (sight.share(bin) - light / all.max(1e-6)).abs() / n as f32;
@@ -156,4 +160,50 @@ fn light_falls_off_through_a_block() {
     // Along the strands nothing is in the way.
     sweep.run(&grid, &fur, Vec3::Y);
     assert!(sweep.light.iter().all(|&light| light > 0.95));
+}
+
+/// How bright it is at places in a meadow is about what walks between its strands say; direct light alone is not.
+#[test]
+fn glow_is_what_walks_bring() {
+    let lit = |i: usize| if i % 32 < 16 { Rgb::ONE } else { Rgb::ZERO };
+    let half_black = Environment::from_texels(32, 16, (0..512).map(lit).collect());
+    let scene = meadow_in(half_black, 10_000, 30.0);
+    let outlook = scene.outlook.as_ref().unwrap();
+    let mut rng = Rng::new(8, 0);
+    let (mut glow, mut direct, mut by_walks) = (0.0, 0.0, 0.0);
+    for _ in 0..40 {
+        let [x, y, z] = std::array::from_fn(|_| rng.uniform_f32());
+        let place = Vec3::new(3.0 + 14.0 * x, 1.0 + 7.0 * y, 3.0 + 14.0 * z);
+        let look = outlook.look(place, [0.5; 3]).unwrap();
+        (glow, direct) = (glow + look.glow, direct + look.sight.seen());
+        for _ in 0..256 {
+            by_walks += walk(&scene, place, &mut rng) / 256.0;
+        }
+    }
+    // Direct light is too much, as above.
+    let ratio = glow / by_walks;
+    assert!((0.9..1.4).contains(&ratio), "{glow} {direct} {by_walks}");
+    assert!(direct < 0.8 * glow, "{glow} {direct} {by_walks}");
+}
+
+/// Light that a walk from a place brings, over the mean of all light, where strands send on what `glow` thinks they do.
+fn walk(scene: &Scene, mut origin: Vec3, rng: &mut Rng) -> f32 {
+    let (mut left, mut leaving) = (1.0, None);
+    while left > 1e-3 {
+        let height = 1.0 - 2.0 * rng.uniform_f32();
+        let (sin, cos) = (std::f32::consts::TAU * rng.uniform_f32()).sin_cos();
+        let flat = (1.0 - height * height).sqrt();
+        let dir = Vec3::new(flat * cos, height, flat * sin);
+        let from = leaving.as_ref().map(|from| scene.strands.leave(from, dir));
+        let Some(hit) = scene
+            .strands
+            .closest(&Ray { origin, dir }, f32::INFINITY, from)
+        else {
+            return left * scene.environment.eval(dir).0.x / scene.environment.mean().x;
+        };
+        origin += hit.t * dir;
+        leaving = Some(hit);
+        left *= glow::ALBEDO;
+    }
+    0.0
 }
