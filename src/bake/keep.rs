@@ -25,6 +25,11 @@ impl Bake<'_> {
             check,
             ..self.header.clone()
         };
+        if done.tallies.is_empty() {
+            let plan = &self.header.plan;
+            let nothing: Vec<_> = (0..plan.units()).map(|_| plan.empty_tally()).collect();
+            return Ok(sums_file::write(path, &header, &nothing)?);
+        }
         Ok(sums_file::write(path, &header, &done.tallies)?)
     }
 

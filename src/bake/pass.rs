@@ -97,16 +97,17 @@ fn fly_unit(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) {
-    let mut batch = Some(first);
-    while let Some(range) = batch {
-        let count = range.end - range.start;
-        unit.shot.fly(range, tally);
-        progress.advance(count);
+    let (mut next, mut under_way) = (Some(first), 0);
+    let mut advance = || {
+        progress.advance(under_way);
         if cancel.is_cancelled() {
-            return;
+            return None;
         }
-        batch = unit.take();
-    }
+        let batch = next.take().or_else(|| unit.take());
+        under_way = batch.as_ref().map_or(0, |batch| batch.end - batch.start);
+        batch
+    };
+    unit.shot.fly(&mut advance, tally);
 }
 
 #[cfg(test)]

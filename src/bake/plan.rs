@@ -7,7 +7,7 @@ use super::{BakeError, Settings};
 use crate::fiber::Fiber;
 use crate::math::symmetry::Symmetry;
 use crate::math::unicube::Unicube;
-use crate::table::{Azimuths, Ledger, Nodes, Provenance, StructureTable, Undyed};
+use crate::table::{Azimuths, Nodes, Provenance, StructureTable, Undyed};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -130,28 +130,31 @@ impl Plan {
         }
     }
 
-    /// Fluxes, errors and the books of the nodes of one channel.
-    pub(super) fn maps(
+    /// Makes the maps of the nodes of one channel: flux fractions node by node and level by level, and errors
+    /// node by node.
+    fn maps(
         &self,
         tallies: &[Tally],
         filter: Option<&Reconstruction>,
-    ) -> Vec<(Vec<f32>, Vec<f32>, Vec<Ledger>)> {
+        flux: &mut [f32],
+        error: &mut [f32],
+    ) {
         if let Some(filter) = filter {
-            let maps = filter.maps(tallies).into_iter().zip(tallies);
-            return maps
-                .map(|(maps, tally)| (maps.flux, maps.error, tally.ledger()))
-                .collect();
+            return filter.maps(tallies, flux, error);
         }
         // One map at a time and thread is copied, to be folded.
         let cube = Unicube::new(self.settings.face);
-        let maps = tallies.par_iter().with_max_len(1).map(|tally| {
+        let (texels, levels) = (cube.texels(), self.settings.levels.len());
+        let maps = flux.par_chunks_mut(levels * texels);
+        let maps = maps.zip(error.par_chunks_mut(texels)).zip(tallies);
+        maps.with_max_len(1).for_each(|((flux, error), tally)| {
             let mut tally = tally.clone();
             if self.folds_maps() {
                 tally.fold(&cube);
             }
-            (tally.flux(), tally.error(), tally.ledger())
+            flux.copy_from_slice(&tally.flux());
+            error.copy_from_slice(&tally.error());
         });
-        maps.collect()
     }
 
     fn table(
@@ -162,16 +165,18 @@ impl Plan {
         photons: u64,
         provenance: &Provenance,
     ) -> StructureTable {
-        let maps = self.maps(tallies, filter);
         let texels = 6 * self.settings.face * self.settings.face * tallies.len();
-        let mut table = StructureTable {
+        let mut flux = vec![0.0; texels * self.settings.levels.len()];
+        let mut error = vec![0.0; texels];
+        self.maps(tallies, filter, &mut flux, &mut error);
+        StructureTable {
             nodes: self.nodes(),
             res: self.settings.face,
             levels: self.settings.levels.clone(),
             radius_um: self.radius_um,
-            flux: Vec::with_capacity(texels * self.settings.levels.len()),
-            error: Vec::with_capacity(texels),
-            ledger: Vec::new(),
+            flux,
+            error,
+            ledger: tallies.iter().flat_map(Tally::ledger).collect(),
             provenance: Provenance {
                 seed: self.settings.seed,
                 photon_seed: self.settings.photon_seed,
@@ -180,13 +185,7 @@ impl Plan {
                 program: crate::PROGRAM.to_owned(),
                 ..provenance.clone()
             },
-        };
-        for (flux, error, ledger) in maps {
-            table.flux.extend(flux);
-            table.error.extend(error);
-            table.ledger.extend(ledger);
         }
-        table
     }
 }
 

@@ -35,6 +35,8 @@ pub struct Bake<'a> {
     pub(super) cube: Unicube,
     pub(super) norm: Norm,
     pub(super) filter: Option<Reconstruction>,
+    /// What making norm and filter took.
+    pub(super) making: Duration,
     pub(super) workers: Option<usize>,
     done: RwLock<Done>,
     pub(super) hand: Mutex<Hand>,
@@ -59,7 +61,7 @@ impl Held<'_> {
 pub(super) struct Done {
     /// Photons of the bake that are in the sums.
     pub(super) span: Range<u64>,
-    /// By channel and node.
+    /// By channel and node; none before the first pass.
     pub(super) tallies: Vec<Tally>,
     /// Estimated when it is asked for: that takes as long as filtering a table does.
     pub(super) error: OnceLock<f64>,
@@ -67,7 +69,7 @@ pub(super) struct Done {
 
 /// What only the driving thread uses.
 pub(super) struct Hand {
-    /// The pass under way, empty between passes.
+    /// The pass under way, empty between passes; none where the sums of the last one were taken over.
     pub(super) fresh: Vec<Mutex<Tally>>,
     /// Photons a second of the last pass.
     pub(super) pace: Option<f64>,
@@ -75,8 +77,6 @@ pub(super) struct Hand {
     pub(super) last: u64,
     /// Seconds that adding it to the sums took.
     pub(super) adding: f64,
-    /// What [`Bake::snapshot`] will take.
-    pub(super) snapshot: Duration,
     /// When the error was reported last, and how long estimating it took.
     pub(super) reported: Option<(Instant, Duration)>,
     /// Where the error is held against the goal next.
@@ -119,27 +119,28 @@ impl<'a> Bake<'a> {
         check_sides(&lent, settings)?;
         let plan = Plan::new(&lent, settings);
         let cube = Unicube::new(settings.face);
-        let tallies = || (0..plan.units()).map(|_| plan.empty_tally());
+        let start = Instant::now();
         let (norm, filter) = rayon::join(
             || Norm::new(&cube, plan.folds_maps()),
             || plan.filter(&cube),
         );
+        let making = start.elapsed();
         Ok(Self {
             nodes: plan.nodes(),
             norm,
             filter,
+            making,
             workers: None,
             done: RwLock::new(Done {
                 span: 0..0,
-                tallies: tallies().collect(),
+                tallies: Vec::new(),
                 error: OnceLock::new(),
             }),
             hand: Mutex::new(Hand {
-                fresh: tallies().map(Mutex::new).collect(),
+                fresh: Vec::new(),
                 pace: None,
                 last: 0,
                 adding: 0.0,
-                snapshot: Duration::ZERO,
                 reported: None,
                 check: first_check(settings.nodes()),
             }),

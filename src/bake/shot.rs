@@ -62,22 +62,33 @@ impl<'a> Shot<'a> {
         Tally::new(self.cube.texels(), self.settings.levels.len())
     }
 
-    /// Flies a range of photon indices.
-    pub(super) fn fly(&self, range: Range<u64>, tally: &mut Tally) {
-        tally.emit(range.end - range.start);
+    /// Flies ranges of photon indices, until there is none any more.
+    ///
+    /// One range follows another while photons of the one before are still under way: where they fly in company,
+    /// that stays complete.
+    pub(super) fn fly(&self, mut ranges: impl FnMut() -> Option<Range<u64>>, tally: &mut Tally) {
+        let settings = self.settings;
         let mut deposits = Deposits::default();
         if let Some(cylinder) = &self.cylinder {
-            let mut start = range.start;
-            while start < range.end {
-                let end = range.end.min(start + COLLECTED as u64);
-                self.cross(cylinder, start..end, &mut deposits, tally);
-                tally.escape(&mut deposits, &self.settings.levels);
-                start = end;
+            while let Some(range) = ranges() {
+                tally.emit(range.end - range.start);
+                let mut start = range.start;
+                while start < range.end {
+                    let end = range.end.min(start + COLLECTED as u64);
+                    self.cross(cylinder, start..end, &mut deposits, tally);
+                    tally.escape(&mut deposits, &settings.levels);
+                    start = end;
+                }
             }
             return;
         }
-        let settings = self.settings;
-        let photons = range.map(|index| Photon {
+        let (mut emitted, mut missed) = (0, 0);
+        let ranges = std::iter::from_fn(|| {
+            let range = ranges()?;
+            emitted += range.end - range.start;
+            Some(range)
+        });
+        let photons = ranges.flatten().map(|index| Photon {
             seed: settings.seed_of_photons(),
             stream: ((self.node as u64) << NODE_BITS) | index,
             sin_range: self.sin_range,
@@ -88,6 +99,10 @@ impl<'a> Shot<'a> {
             settings.fork,
             settings.max_events,
             |part, flight| {
+                if let End::Missed = flight.end {
+                    missed += 1;
+                    return;
+                }
                 self.book(part, &flight, &mut deposits, tally);
                 if deposits.count() >= COLLECTED {
                     tally.escape(&mut deposits, &settings.levels);
@@ -95,6 +110,8 @@ impl<'a> Shot<'a> {
             },
         );
         tally.escape(&mut deposits, &settings.levels);
+        // A photon that never met the fiber does not count.
+        tally.emit(emitted - missed);
     }
 
     /// Flies photons through a bare cylinder.
@@ -167,7 +184,7 @@ impl<'a> Shot<'a> {
             End::Absorbed => tally.absorb(rest, levels),
             End::Truncated => tally.truncate(rest, levels),
             End::Lost => tally.lose(rest, levels),
-            End::Missed => tally.miss(),
+            End::Missed => {}
         }
     }
 }

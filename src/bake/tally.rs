@@ -139,6 +139,11 @@ impl Tally {
         self.levels
     }
 
+    /// Whether anything left through a texel.
+    pub(super) fn has(&self, texel: usize) -> bool {
+        self.touched.has(texel)
+    }
+
     /// What left through a texel without having met pigment, the same at all levels, and the sum of
     /// its squares.
     #[inline]
@@ -163,10 +168,15 @@ impl Tally {
         &self.texels[texel * self.levels..(texel + 1) * self.levels]
     }
 
-    /// What left at a level.
-    pub(super) fn escaped(&self, level: usize) -> u64 {
-        let sum = |texel| self.bare[texel] + self.texels[texel * self.levels + level];
-        self.touched.iter().map(sum).sum()
+    /// What left, per level.
+    pub(super) fn escaped(&self) -> Vec<u64> {
+        let (mut bare, mut escaped) = (0, vec![0; self.levels]);
+        for texel in self.touched.iter() {
+            bare += self.bare[texel];
+            add(&mut escaped, self.run(texel));
+        }
+        escaped.iter_mut().for_each(|sum| *sum += bare);
+        escaped
     }
 
     /// What left through a texel at the clear level and the variance of that, in photons.
@@ -176,14 +186,9 @@ impl Tally {
         (photons(a + b), photons(a2 + b2))
     }
 
-    /// So many photons were sent out. Their parts follow.
+    /// So many photons were sent out and met the fiber.
     pub(super) fn emit(&mut self, photons: u64) {
         self.photons += photons;
-    }
-
-    /// A photon never met the fiber: it does not count.
-    pub(super) fn miss(&mut self) {
-        self.photons -= 1;
     }
 
     /// Parts of photons left. What was collected is empty then.
@@ -290,15 +295,11 @@ impl Tally {
 
     /// The books, per level.
     pub(super) fn ledger(&self) -> Vec<Ledger> {
-        let (mut bare, mut escaped) = (0, vec![0; self.levels]);
-        for texel in self.touched.iter() {
-            bare += self.bare[texel];
-            add(&mut escaped, self.run(texel));
-        }
+        let escaped = self.escaped();
         (0..self.levels)
             .map(|k| Ledger {
                 emitted: self.photons * PHOTON,
-                escaped: bare + escaped[k],
+                escaped: escaped[k],
                 absorbed: self.absorbed[k],
                 truncated: self.truncated[k],
                 lost: self.lost[k],

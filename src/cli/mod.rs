@@ -15,6 +15,7 @@ mod fiber;
 mod figure;
 mod gallery;
 mod grids;
+mod memory;
 mod merge;
 mod render;
 mod schema;

@@ -1,6 +1,7 @@
 //! Voronoi cells: columns across the medulla, and polyhedra in it.
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// A column: the polygon round its center, cut by those of its neighbors.
@@ -47,6 +48,8 @@ pub(super) fn columns(count: usize, outline: &[DVec2]) -> Vec<Column> {
         .collect();
     for _ in 0..ROUNDS {
         points = (0..count)
+            .into_par_iter()
+            .with_min_len(16)
             .map(|i| centroid(&polygon(&points, i, outline).0))
             .collect();
     }
@@ -200,8 +203,11 @@ impl Polyhedron {
         }
         let middle = rim.iter().sum::<DVec3>() / rim.len() as f64;
         let (u, v) = normal.any_orthonormal_pair();
-        let angle = |p: &DVec3| (*p - middle).dot(v).atan2((*p - middle).dot(u));
-        rim.sort_by(|p, q| angle(p).total_cmp(&angle(q)));
+        let angle = |p: DVec3| ((p - middle).dot(v).atan2((p - middle).dot(u)), p);
+        let mut turned: Vec<(f64, DVec3)> = rim.iter().map(|&p| angle(p)).collect();
+        turned.sort_by(|p, q| p.0.total_cmp(&q.0));
+        rim.clear();
+        rim.extend(turned.iter().map(|(_, p)| p));
         self.faces.push(PolyFace {
             normal,
             offset,

@@ -16,3 +16,14 @@ pub mod symmetry;
 pub(crate) mod triangle;
 pub mod turn;
 pub mod unicube;
+
+/// Runs loops with the widest registers that the processor has. Results are the same bits: the compiler neither
+/// reorders sums nor contracts products. What is to profit must be inlined.
+#[inline(always)]
+pub(crate) fn widest<R>(f: impl FnOnce() -> R) -> R {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(avx512) = lanes::Avx512::detect() {
+        return avx512.run(f);
+    }
+    f()
+}

@@ -1,7 +1,9 @@
 //! Values on a lattice and on half as many cells.
 
+use crate::math::widest;
+
 /// Kernel of one step to half as many cells.
-const TAPS: [f32; 4] = [0.125, 0.375, 0.375, 0.125];
+pub(super) const TAPS: [f32; 4] = [0.125, 0.375, 0.375, 0.125];
 
 /// Values on a lattice, azimuth running fastest.
 #[derive(Clone, Debug)]
@@ -15,6 +17,24 @@ pub(super) struct Field<const N: usize> {
 pub(super) struct Plane {
     size: [usize; 2],
     pub(super) values: Vec<f32>,
+}
+
+/// Memory of fields that are done with: pages that the system has given already cost nothing more.
+#[derive(Debug, Default)]
+pub(super) struct Pool<const N: usize>(Vec<Vec<[f32; N]>>);
+
+impl<const N: usize> Pool<N> {
+    /// A field of zeros.
+    pub(super) fn field(&mut self, size: [usize; 3]) -> Field<N> {
+        let mut values = self.0.pop().unwrap_or_default();
+        values.clear();
+        values.resize(size.iter().product(), [0.0; N]);
+        Field { size, values }
+    }
+
+    pub(super) fn give(&mut self, field: Field<N>) {
+        self.0.push(field.values);
+    }
 }
 
 impl Plane {
@@ -32,22 +52,24 @@ impl Plane {
         for x in 0..size[0] {
             for y in 0..size[1] {
                 let sum = taps([x, y][axis], self.size[axis], axis)
-                    .map(|(at, k)| k * self.values[self.row(axis, x, y, at)])
+                    .map(|(at, k)| k * self.values[row(self.size[1], axis, x, y, at)])
                     .sum();
                 out.values[x * size[1] + y] = sum;
             }
         }
         out
     }
+}
 
-    /// The row that has `at` in place of its coordinate along `axis`.
-    pub(super) fn row(&self, axis: usize, x: usize, y: usize, at: usize) -> usize {
-        let [x, y] = if axis == 0 { [at, y] } else { [x, at] };
-        x * self.size[1] + y
-    }
+/// The row that has `at` in place of its coordinate along `axis`.
+#[inline(always)]
+fn row(ny: usize, axis: usize, x: usize, y: usize, at: usize) -> usize {
+    let [x, y] = if axis == 0 { [at, y] } else { [x, at] };
+    x * ny + y
 }
 
 /// Cells and weights that make cell `i` of half as many. Even at `y = 0`; elsewhere nothing is beyond.
+#[inline(always)]
 fn taps(i: usize, len: usize, axis: usize) -> impl Iterator<Item = (usize, f32)> {
     TAPS.into_iter().enumerate().filter_map(move |(tap, k)| {
         let at = match (2 * i + tap).checked_sub(1) {
@@ -67,25 +89,31 @@ impl<const N: usize> Field<N> {
         }
     }
 
+    #[inline(always)]
     pub(super) fn row(&self, row: usize) -> &[[f32; N]] {
         &self.values[row * self.size[2]..][..self.size[2]]
     }
 
     /// Half as many cells along x or y: sums of taps, or means by weights.
-    pub(super) fn reduced(&self, axis: usize, weights: Option<&Plane>) -> Self {
+    pub(super) fn reduced(&self, axis: usize, weights: Option<&Plane>, pool: &mut Pool<N>) -> Self {
         let mut size = self.size;
         size[axis] /= 2;
-        let mut out = Self::new(size);
-        let np = size[2];
-        let flat = Plane {
-            size: [self.size[0], self.size[1]],
-            values: Vec::new(),
-        };
-        for (row, to) in out.values.chunks_exact_mut(np).enumerate() {
-            let (x, y) = (row / size[1], row % size[1]);
+        let mut out = pool.field(size);
+        widest(
+            #[inline(always)]
+            || self.reduce(axis, weights, &mut out),
+        );
+        out
+    }
+
+    #[inline(always)]
+    fn reduce(&self, axis: usize, weights: Option<&Plane>, out: &mut Self) {
+        let [_, ny, np] = out.size;
+        for (to_row, to) in out.values.chunks_exact_mut(np).enumerate() {
+            let (x, y) = (to_row / ny, to_row % ny);
             let mut all = 0.0;
             for (at, k) in taps([x, y][axis], self.size[axis], axis) {
-                let from = flat.row(axis, x, y, at);
+                let from = row(self.size[1], axis, x, y, at);
                 let k = weights.map_or(k, |weights| k * weights.values[from]);
                 if k > 0.0 {
                     all += k;
@@ -93,37 +121,29 @@ impl<const N: usize> Field<N> {
                 }
             }
             if weights.is_some() && all > 0.0 {
-                to.iter_mut().flatten().for_each(|v| *v /= all);
+                to.as_flattened_mut().iter_mut().for_each(|v| *v /= all);
             }
         }
-        out
-    }
-
-    /// Half as many cells along azimuth, even at both ends.
-    pub(super) fn narrowed(&self) -> Self {
-        let [nx, ny, np] = self.size;
-        let mut out = Self::new([nx, ny, np / 2]);
-        let rows = out.values.chunks_exact_mut(np / 2);
-        for (to, from) in rows.zip(self.values.chunks_exact(np)) {
-            if from.iter().all(|v| *v == [0.0; N]) {
-                continue;
-            }
-            for (i, to) in to.iter_mut().enumerate() {
-                for (tap, k) in TAPS.into_iter().enumerate() {
-                    let at = (2 * i + tap).saturating_sub(1).min(np - 1);
-                    for (to, from) in to.iter_mut().zip(from[at]) {
-                        *to += k * from;
-                    }
-                }
-            }
-        }
-        out
     }
 
     /// Adds `sign` times a field of half as many cells along x or y, linear between centers.
     ///
     /// * `inside`: rows of this field that count, and of the coarse one.
     pub(super) fn add_coarse(
+        &mut self,
+        axis: usize,
+        sign: f32,
+        coarse: &Self,
+        inside: Option<[&Plane; 2]>,
+    ) {
+        widest(
+            #[inline(always)]
+            || self.add_coarse_rows(axis, sign, coarse, inside),
+        );
+    }
+
+    #[inline(always)]
+    fn add_coarse_rows(
         &mut self,
         axis: usize,
         sign: f32,
@@ -150,28 +170,11 @@ impl<const N: usize> Field<N> {
             });
             let outside = inside.is_some_and(|[_, coarse]| coarse.values[next] <= 0.0);
             let next = if outside { near } else { next };
-            add(to, 0.75 * sign, coarse.row(near));
-            add(to, 0.25 * sign, coarse.row(next));
-        }
-    }
-
-    /// Likewise along azimuth.
-    pub(super) fn add_narrow(&mut self, sign: f32, coarse: &Self) {
-        let half = coarse.size[2];
-        let rows = self.values.chunks_exact_mut(2 * half);
-        for (to, from) in rows.zip(coarse.values.chunks_exact(half)) {
-            if from.iter().all(|v| *v == [0.0; N]) {
-                continue;
-            }
-            for (i, to) in to.iter_mut().enumerate() {
-                let near = i / 2;
-                let next = match i % 2 {
-                    0 => near.saturating_sub(1),
-                    _ => (near + 1).min(half - 1),
-                };
-                for ((to, a), b) in to.iter_mut().zip(from[near]).zip(from[next]) {
-                    *to += sign * (0.75 * a + 0.25 * b);
-                }
+            let (near, next) = (coarse.row(near), coarse.row(next));
+            let (a, b) = (0.75 * sign, 0.25 * sign);
+            let from = near.as_flattened().iter().zip(next.as_flattened());
+            for (to, (near, next)) in to.as_flattened_mut().iter_mut().zip(from) {
+                *to = (*to + a * near) + b * next;
             }
         }
     }
@@ -181,15 +184,23 @@ impl<const N: usize> Field<N> {
         let np = self.size[2];
         for (row, by) in self.values.chunks_exact_mut(np).zip(&by.values) {
             let scale = if *by > 0.0 { 1.0 / by } else { 0.0 };
-            row.iter_mut().flatten().for_each(|v| *v *= scale);
+            row.as_flattened_mut().iter_mut().for_each(|v| *v *= scale);
+        }
+    }
+
+    /// One of the values of every cell.
+    pub(super) fn lane(&self, lane: usize) -> Field<1> {
+        Field {
+            size: self.size,
+            values: self.values.iter().map(|v| [v[lane]]).collect(),
         }
     }
 }
 
+#[inline(always)]
 fn add<const N: usize>(to: &mut [[f32; N]], k: f32, from: &[[f32; N]]) {
-    for (to, from) in to.iter_mut().zip(from) {
-        for (to, from) in to.iter_mut().zip(from) {
-            *to += k * from;
-        }
+    let pairs = to.as_flattened_mut().iter_mut().zip(from.as_flattened());
+    for (to, from) in pairs {
+        *to += k * from;
     }
 }

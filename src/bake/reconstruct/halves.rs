@@ -6,8 +6,9 @@
 //! taken off: this sees all that is wrong, but is itself uncertain while counts are few. Each counts by
 //! its own uncertainty.
 
-use super::signal::{Half, Kind};
-use super::{All, Reconstruction};
+use super::desk::{Desk, Desks, SIDE};
+use super::signal::Half;
+use super::{Map, Reconstruction};
 use crate::bake::noise::{Noise, Norm};
 use crate::bake::tally::Tally;
 use rayon::prelude::*;
@@ -45,32 +46,33 @@ impl Reconstruction {
         norm: &Norm,
         counts: &[bool],
     ) -> Vec<Noise> {
-        let kinds: [Kind; 2] = [Tally::bare, Tally::colored];
-        let halves = [Half::First, Half::Second];
-        let parts = kinds.map(|kind| halves.map(|half| (kind, half)));
-        // Every second node tells as much, for two thirds of the work.
-        let wanted: Vec<bool> = (0..tallies.len())
-            .map(|n| counts[n] && n % 2 == 0)
-            .collect();
-        let filtered: Vec<All> = parts
-            .as_flattened()
-            .par_iter()
-            .map(|&(kind, half)| {
-                let mut all = self.filter_all(tallies, kind, half, &wanted);
-                // Only other levels would need these, and they are large.
-                all.gains = None;
-                all.nodes.iter_mut().for_each(|node| node.gains.clear());
-                all.nodes
-                    .iter_mut()
-                    .for_each(|node| node.gains.shrink_to_fit());
-                all
-            })
-            .collect();
-        let nodes = tallies.par_iter().enumerate();
+        let halves = [Half::First, Half::Second].map(|half| {
+            let tallies = tallies.par_iter().with_max_len(1);
+            let signals = tallies.map(|tally| self.signals(tally, half));
+            signals.collect::<Vec<Map>>()
+        });
+        let [first, second] = &halves;
+        let (mut guess, other) = rayon::join(
+            || self.guess(tallies, first, &[]),
+            || self.guess(tallies, second, &[]),
+        );
+        guess.extend(other);
+        let desks = Desks::default();
+        let nodes = (0..tallies.len()).into_par_iter().with_max_len(1);
         let found: Vec<Found> = nodes
-            .map(|(node, tally)| match wanted[node] {
-                true => self.held_against(tally, node, &kinds, &filtered, norm),
-                false => Found::default(),
+            .map(|node| {
+                // Every second node tells as much, for two thirds of the work.
+                if !counts[node] || node % 2 == 1 {
+                    return Found::default();
+                }
+                let mut desk = desks.take();
+                self.expect_halves(&mut desk, node, &guess);
+                let raw = [&first[node], &second[node]];
+                desk.load(0, raw);
+                self.filter(&mut desk);
+                let found = self.held_against(&desk, raw, norm);
+                desks.give(desk);
+                found
             })
             .collect();
         let sum = |of: fn(&Found) -> f64| found.iter().map(of).sum::<f64>();
@@ -89,22 +91,18 @@ impl Reconstruction {
         noise.collect()
     }
 
-    fn held_against(
-        &self,
-        tally: &Tally,
-        node: usize,
-        kinds: &[Kind; 2],
-        filtered: &[All],
-        norm: &Norm,
-    ) -> Found {
+    /// What filtered halves say when each is held against the counts of the other.
+    fn held_against(&self, desk: &Desk, raw: [&Map; 2], norm: &Norm) -> Found {
         let mut found = Found::default();
         let mut means = vec![[0.0; 2]; self.scales.texels.len()];
-        for (filtered, kind) in filtered.chunks(2).zip(kinds) {
-            let raw = [Half::First, Half::Second].map(|half| self.signal(tally, *kind, half));
-            let [sum, squares] = raw.iter().flatten().fold([0.0; 2], |[sum, squares], v| {
-                let [density, deviation] = v.map(f64::from);
-                [sum + density, squares + deviation * deviation]
-            });
+        for kind in [0, 2] {
+            let [sum, squares] = raw
+                .into_iter()
+                .flatten()
+                .fold([0.0; 2], |[sum, squares], v| {
+                    let [density, deviation] = [v[kind], v[kind + 1]].map(f64::from);
+                    [sum + density, squares + deviation * deviation]
+                });
             // The variance of a count over the count.
             let unit = if sum > 0.0 { squares / sum } else { 0.0 };
             for (cell, &[texel, mirror]) in self.scales.texels.iter().enumerate() {
@@ -113,10 +111,11 @@ impl Reconstruction {
                 if weight == 0.0 {
                     continue;
                 }
-                let mean = [0, 1].map(|half| f64::from(filtered[half].nodes[node].mean[cell]));
+                let mean = [0, SIDE].map(|half| f64::from(desk.kinds[cell][half + kind]));
                 found.variance += 0.5 * weight * (mean[0] - mean[1]).powi(2);
                 for (one, other) in [(0, 1), (1, 0)] {
-                    let [raw, deviation] = raw[other][cell].map(f64::from);
+                    let [raw, deviation] =
+                        [raw[other][cell][kind], raw[other][cell][kind + 1]].map(f64::from);
                     let apart = (mean[one] - raw).powi(2) - deviation * deviation;
                     found.apart += 0.5 * weight * apart;
                     found.spread += (weight * mean[one].max(0.0) * unit).powi(2);

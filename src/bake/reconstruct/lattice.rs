@@ -12,24 +12,33 @@
 //! photons say against it is put right per node.
 
 use super::field::{Field, Plane};
-use crate::math::frame;
 use crate::math::unicube::Unicube;
+use crate::math::widest;
 use crate::table::Nodes;
+use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Finest lattice along x and azimuth: one cell a texel of a face with 64.
 const FINEST: usize = 64;
 /// Points of a texel along each side that are placed on the lattice.
 const SIDE: usize = 3;
+/// Numbers that are read off several lattices at a time: as many as a cache line holds.
+pub(super) const STRIP: usize = 16;
 /// Steps of the integrals over a bin.
 const STEPS: usize = 32;
 
-/// A point of a texel: inclination and azimuth in cells, and `1 / (cos(inclination) points)`.
-#[derive(Clone, Copy, Debug)]
+/// A point of a texel.
+#[derive(Clone, Copy, Debug, Default)]
 struct Point {
+    /// Inclination in cells.
     theta: f32,
-    phi: f32,
+    /// `1 / (cos(inclination) points)`.
     weight: f32,
+    /// The cell of its azimuth.
+    phi: u32,
+    /// Between the centers of which cell and the next it lies, and how far from the first; even at both ends.
+    low: u32,
+    high: f32,
 }
 
 /// Which photons of which node tell of which cells.
@@ -58,16 +67,21 @@ impl Lattice {
         let ny = if nodes.len() < 24 { 12 } else { 24 };
         let size = [4 * face, ny, face];
         let (mut mass, mut starts, mut shares) = (Vec::new(), vec![0], Vec::new());
+        let mut cells = vec![0.0; ny];
         for bin in nodes.edges.windows(2) {
+            let queries = (0..STEPS).map(|step| {
+                let along = (step as f64 + 0.5) / STEPS as f64;
+                let query = bin[0] + (bin[1] - bin[0]) * along;
+                (query, query.cos())
+            });
+            let queries: Vec<_> = queries.collect();
             for x in 0..size[0] {
                 let x = 2.0 * PI * (x as f64 + 0.5) / size[0] as f64 - PI;
-                let mut cells = vec![0.0; ny];
-                for step in 0..STEPS {
-                    let along = (step as f64 + 0.5) / STEPS as f64;
-                    let query = bin[0] + (bin[1] - bin[0]) * along;
+                cells.fill(0.0);
+                for &(query, cos) in &queries {
                     if (x - query).abs() < FRAC_PI_2 {
                         let y = (query - 0.5 * x).abs() / FRAC_PI_2 * ny as f64;
-                        cells[(y as usize).min(ny - 1)] += query.cos() * (x - query).cos().powi(2);
+                        cells[(y as usize).min(ny - 1)] += cos * (x - query).cos().powi(2);
                     }
                 }
                 let sum: f64 = cells.iter().sum();
@@ -82,11 +96,16 @@ impl Lattice {
         let point = |texel: usize, i: usize| {
             let at = |i: usize| (i as f64 + 0.5) / SIDE as f64;
             let (w, _) = cube.direction(texel, at(i % SIDE), at(i / SIDE));
-            let cos = w.x.hypot(w.y).max(1e-6);
+            let cos = w.x.hypot(w.y);
+            let phi = (w.y.atan2(w.x).abs() / PI * size[2] as f64) as f32;
+            let at = (phi - 0.5).clamp(0.0, (size[2] - 1) as f32);
+            let low = (at as usize).min(size[2] - 2);
             Point {
-                theta: (frame::theta_of(w) * cells) as f32,
-                phi: (w.y.atan2(w.x).abs() / PI * size[2] as f64) as f32,
-                weight: (1.0 / cos / (SIDE * SIDE) as f64) as f32,
+                theta: (w.z.atan2(cos) * cells) as f32,
+                weight: (1.0 / cos.max(1e-6) / (SIDE * SIDE) as f64) as f32,
+                phi: (phi as usize).min(size[2] - 1) as u32,
+                low: low as u32,
+                high: at - low as f32,
             }
         };
         Self {
@@ -100,7 +119,8 @@ impl Lattice {
             starts,
             shares,
             points: texels
-                .iter()
+                .par_iter()
+                .with_min_len(256)
                 .map(|&[texel, _]| std::array::from_fn(|i| point(texel, i)))
                 .collect(),
             sides: if folded { 1.0 } else { 2.0 },
@@ -139,68 +159,84 @@ impl Lattice {
         ((self.zeros[node] + point.theta) as usize).min(self.size[0] - 1)
     }
 
-    /// Adds the photons of a node to the cells that they tell of.
+    /// Adds the photons of a node to the cells that they tell of, to several fields at once.
     ///
     /// * `counts`: photons of every cell of the map, from its density.
-    pub(super) fn gather<const N: usize>(
+    pub(super) fn gather<const K: usize>(
         &self,
         node: usize,
-        counts: impl Iterator<Item = [f32; N]>,
-        into: &mut Field<N>,
+        counts: impl Iterator<Item = [[f32; 4]; K]>,
+        into: &mut [Field<4>; K],
     ) {
         let [_, ny, np] = self.size;
+        let into = into.each_mut().map(|field| field.values.as_mut_slice());
         let all = counts.zip(&self.points);
-        for (count, points) in all.filter(|(count, _)| *count != [0.0; N]) {
-            let part = count.map(|v| v / (SIDE * SIDE) as f32);
+        for (counts, points) in all.filter(|(counts, _)| *counts != [[0.0; 4]; K]) {
+            let parts = counts.map(|count| count.map(|v| v / (SIDE * SIDE) as f32));
             for point in points {
                 let x = self.x_of(node, point);
-                let phi = (point.phi as usize).min(np - 1);
                 for &(y, share) in self.shares(node, x) {
-                    let cell = &mut into.values[(x * ny + y) * np + phi];
-                    for (cell, part) in cell.iter_mut().zip(part) {
-                        *cell += share * part;
+                    let at = (x * ny + y) * np + point.phi as usize;
+                    for k in 0..K {
+                        let cell = &mut into[k][at];
+                        for (cell, part) in cell.iter_mut().zip(parts[k]) {
+                            *cell += share * part;
+                        }
                     }
                 }
             }
         }
     }
 
-    /// The densities that a node sees of S.
-    pub(super) fn project<const N: usize>(&self, node: usize, s: &Field<N>) -> Vec<[f32; N]> {
+    /// The densities that a node sees of several S, side by side.
+    ///
+    /// * `seen`: memory to work in.
+    /// * `see`: gets every cell of the map in order; lanes beyond the fields are 0.
+    pub(super) fn project(
+        &self,
+        node: usize,
+        fields: &[Field<4>],
+        seen: &mut Vec<[f32; STRIP]>,
+        mut see: impl FnMut(usize, &[f32; STRIP]),
+    ) {
         let [nx, ny, np] = self.size;
-        let mut seen = vec![[0.0; N]; nx * np];
-        for (x, row) in seen.chunks_exact_mut(np).enumerate() {
-            for &(y, share) in self.shares(node, x) {
-                let weight = share * self.mass[node * nx + x];
-                let from = &s.values[(x * ny + y) * np..][..np];
-                for (to, from) in row.iter_mut().zip(from) {
-                    for (to, from) in to.iter_mut().zip(from) {
-                        *to += weight * from;
+        seen.clear();
+        seen.resize(nx * np, [0.0; STRIP]);
+        widest(
+            #[inline(always)]
+            || {
+                for (x, row) in seen.chunks_exact_mut(np).enumerate() {
+                    for &(y, share) in self.shares(node, x) {
+                        let weight = share * self.mass[node * nx + x];
+                        for (field, at) in fields.iter().zip((0..STRIP).step_by(4)) {
+                            for (to, from) in row.iter_mut().zip(field.row(x * ny + y)) {
+                                for (to, from) in to[at..at + 4].iter_mut().zip(from) {
+                                    *to += weight * from;
+                                }
+                            }
+                        }
                     }
                 }
-            }
-        }
-        let density = |points: &[Point; SIDE * SIDE]| {
-            let mut sum = [0.0; N];
-            for point in points {
-                let row = &seen[self.x_of(node, point) * np..][..np];
-                // Between the centers of cells, even at both ends.
-                let at = (point.phi - 0.5).clamp(0.0, (np - 1) as f32);
-                let low = (at as usize).min(np - 2);
-                let high = at - low as f32;
-                for ((sum, a), b) in sum.iter_mut().zip(row[low]).zip(row[low + 1]) {
-                    *sum += point.weight * (a + high * (b - a));
+                for (cell, points) in self.points.iter().enumerate() {
+                    let mut sum = [0.0; STRIP];
+                    for point in points {
+                        let row = &seen[self.x_of(node, point) * np..][..np];
+                        let low = point.low as usize;
+                        for ((sum, a), b) in sum.iter_mut().zip(row[low]).zip(row[low + 1]) {
+                            *sum += point.weight * (a + point.high * (b - a));
+                        }
+                    }
+                    see(cell, &sum);
                 }
-            }
-            sum
-        };
-        self.points.iter().map(density).collect()
+            },
+        );
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::frame;
     use crate::table::Mode;
 
     /// A smooth reciprocal S is found again from what it lets photons of all nodes do, and the nodes
@@ -239,22 +275,28 @@ mod tests {
             sum / weights
         };
         let photons = vec![1000.0; nodes.len()];
-        let mut sums: Field<1> = Field::new(lattice.size());
+        let mut sums = [Field::new(lattice.size())];
         for (node, &photons) in photons.iter().enumerate() {
             let counts = texels.iter().map(|&[texel, _]| {
-                [(density(node, texel) * cube.solid_angle(texel) * photons) as f32]
+                let count = density(node, texel) * cube.solid_angle(texel) * photons;
+                [[0.0, 0.0, count as f32, 0.0]]
             });
             lattice.gather(node, counts, &mut sums);
         }
+        let [mut sums] = sums;
         sums.divide(&lattice.exposure(&photons));
+        let fields = [Field::new(lattice.size()), sums];
         for node in 4..12 {
-            let seen = lattice.project(node, &sums);
+            let mut seen = vec![0.0; texels.len()];
+            lattice.project(node, &fields, &mut Vec::new(), |cell, lanes| {
+                seen[cell] = lanes[6];
+            });
             let (mut off, mut all) = (0.0, 0.0);
             for (&[texel, _], seen) in texels.iter().zip(seen) {
                 let (w, _) = cube.direction(texel, 0.5, 0.5);
                 if frame::theta_of(w).abs() < 1.2 {
                     let density = density(node, texel);
-                    off += (f64::from(seen[0]) - density).powi(2);
+                    off += (f64::from(seen) - density).powi(2);
                     all += density * density;
                 }
             }

@@ -17,7 +17,11 @@
 //! every map is kept and nothing is negative. As photons come in, noise falls below every band and
 //! the maps become the plain means.
 
+mod around;
+mod azimuth;
+mod desk;
 mod field;
+mod guess;
 mod halves;
 mod lattice;
 mod pyramid;
@@ -27,12 +31,12 @@ mod signal;
 use super::tally::Tally;
 use crate::math::unicube::Unicube;
 use crate::table::{Mode, Nodes, PHOTON};
-use field::Field;
+use desk::{Desk, Desks, PAIR, SIDE};
 use lattice::Lattice;
-use pyramid::{Gains, Pyramid};
+use pyramid::Pyramid;
 use rayon::prelude::*;
 use scales::Scales;
-use signal::{Half, Kind};
+use signal::Half;
 
 /// Noise counts this much more than it should: its power in a neighborhood is itself known from few
 /// coefficients, and where they lie by chance below the mean, noise would pass for signal. At 0
@@ -55,30 +59,9 @@ pub(super) struct Reconstruction {
     joint: Option<(Lattice, Pyramid)>,
 }
 
-/// What is left of a node's noise.
-pub(super) struct Maps {
-    /// Flux fractions, level by level.
-    pub(super) flux: Vec<f32>,
-    /// Relative standard error of the clear level; infinite where nothing is.
-    pub(super) error: Vec<f32>,
-}
-
-/// A map filtered: densities of the cells.
-#[derive(Default)]
-struct Filtered {
-    mean: Vec<f32>,
-    /// What the filter leaves of noise alone.
-    noise: Vec<f32>,
-    /// Shares kept of what the guess does not say, `[band][cell]`; of the last band everything.
-    gains: Vec<Vec<f32>>,
-}
-
-/// All maps of one kind, filtered.
-struct All {
-    nodes: Vec<Filtered>,
-    /// Shares kept on the lattice.
-    gains: Option<Gains>,
-}
+/// Four numbers a cell: light that met no pigment, its deviation, light that met pigment, its deviation; or
+/// four levels of the latter.
+type Map = Vec<[f32; SIDE]>;
 
 impl Reconstruction {
     /// * `folded`: maps are averaged with their mirror images.
@@ -108,223 +91,129 @@ impl Reconstruction {
         }
     }
 
-    /// The maps of all nodes.
-    pub(super) fn maps(&self, tallies: &[Tally]) -> Vec<Maps> {
-        let every = vec![true; tallies.len()];
-        let (bare, colored) = rayon::join(
-            || self.filter_all(tallies, Tally::bare, Half::Both, &every),
-            || self.filter_all(tallies, Tally::colored, Half::Both, &every),
-        );
-        let levels = tallies.first().map_or(0, Tally::levels);
-        // Densities of the light that met pigment, [group of levels][node][cell].
-        let groups: Vec<Vec<Vec<[f32; LANES]>>> = (0..levels.div_ceil(LANES))
-            .into_par_iter()
-            .map(|group| self.levels(tallies, group * LANES, &colored))
-            .collect();
-        let nodes = tallies.par_iter().enumerate();
-        nodes
-            .map(|(node, tally)| {
-                let (bare, clear) = (&bare.nodes[node], &colored.nodes[node]);
-                let mut flux = Vec::with_capacity(levels * tally.texels());
-                for level in 0..levels {
-                    let colored = &groups[level / LANES][node];
-                    flux.extend(self.map(tally, level, &bare.mean, colored));
-                }
-                Maps {
-                    error: self.errors(tally.texels(), bare, clear),
-                    flux,
-                }
-            })
-            .collect()
-    }
-
-    /// Maps of one kind of light, guessed from all nodes and put right by their own photons.
+    /// Makes the maps of all nodes.
     ///
-    /// * `wanted`: nodes whose maps are made; the others stay empty.
-    fn filter_all(&self, tallies: &[Tally], kind: Kind, half: Half, wanted: &[bool]) -> All {
-        let signals: Vec<_> = tallies
+    /// * `flux`: gets flux fractions, node by node and level by level.
+    /// * `error`: gets the relative standard error of the clear level, node by node; infinite where nothing is.
+    pub(super) fn maps(&self, tallies: &[Tally], flux: &mut [f32], error: &mut [f32]) {
+        let Some(first) = tallies.first() else {
+            return;
+        };
+        let (levels, texels) = (first.levels(), first.texels());
+        let signals: Vec<Map> = tallies
             .par_iter()
-            .map(|tally| self.signal(tally, kind, half))
+            .with_max_len(1)
+            .map(|tally| self.signals(tally, Half::Both))
             .collect();
-        let Some((lattice, pyramid)) = &self.joint else {
-            let nodes = signals.into_par_iter();
-            return All {
-                nodes: nodes.map(|signal| self.filter(signal, CAUTION)).collect(),
-                gains: None,
-            };
-        };
-        let photons: Vec<f64> = tallies.iter().map(|tally| tally.photons() as f64).collect();
-        let mut sums: Field<2> = Field::new(lattice.size());
-        let mut squares: Field<1> = Field::new(lattice.size());
-        for (node, (signal, photons)) in signals.iter().zip(&photons).enumerate() {
-            let counts = || {
-                let cells = signal.iter().zip(&self.solid_angle);
-                cells.map(|(v, omega)| v.map(|v| v * (omega * photons) as f32))
-            };
-            lattice.gather(node, counts(), &mut sums);
-            lattice.gather(node, counts().map(|[_, dev]| [dev * dev]), &mut squares);
-        }
-        let exposure = lattice.exposure(&photons);
-        sums.divide(&exposure);
-        let s = Field {
-            size: sums.size,
-            values: sums.values.iter().map(|[v, _]| [*v]).collect(),
-        };
-        let gains = pyramid.gains(&s, squares, exposure, CAUTION);
-        let guess = pyramid.apply(sums, &gains);
-        let nodes = signals.into_par_iter().enumerate();
-        let nodes = nodes.map(|(node, mut signal)| {
-            if !wanted[node] {
-                return Filtered::default();
-            }
-            let guess = lattice.project(node, &guess);
-            for (v, guess) in signal.iter_mut().zip(&guess) {
-                *v = [v[0] - guess[0], v[1] - guess[1]];
-            }
-            let mut filtered = self.filter(signal, CAUTION_AFTER_GUESS);
-            for (cell, guess) in guess.iter().enumerate() {
-                filtered.mean[cell] += guess[0];
-                filtered.noise[cell] += guess[1];
-            }
-            filtered
-        });
-        All {
-            nodes: nodes.collect(),
-            gains: Some(gains),
-        }
-    }
-
-    fn filter(&self, signal: Vec<[f32; 2]>, caution: f32) -> Filtered {
-        let cells = signal.len();
-        let mut filtered = Filtered {
-            mean: vec![0.0; cells],
-            noise: vec![0.0; cells],
-            gains: Vec::with_capacity(self.scales.bands()),
-        };
-        self.scales.take_apart(signal, |band, part| {
-            let gains: Vec<f32> = if self.joint.is_none() && band + 1 == self.scales.bands() {
-                vec![1.0; cells]
-            } else {
-                let power = part.iter().map(|v| v.map(|v| v * v)).collect();
-                let around = self.scales.around(band, power);
-                around
-                    .iter()
-                    .map(|&[all, noise]| share(all, noise, caution))
-                    .collect()
-            };
-            for (cell, (gain, [value, noise])) in gains.iter().zip(part).enumerate() {
-                filtered.mean[cell] += gain * value;
-                filtered.noise[cell] += gain * noise;
-            }
-            filtered.gains.push(gains);
-        });
-        filtered
-    }
-
-    /// Some levels, filtered as the clear one was: densities `[node][cell]`.
-    fn levels(&self, tallies: &[Tally], first: usize, clear: &All) -> Vec<Vec<[f32; LANES]>> {
-        let maps: Vec<_> = tallies
+        // [node][group of levels][cell]
+        let densities: Vec<Vec<Map>> = tallies
             .par_iter()
-            .map(|tally| self.densities(tally, first))
+            .with_max_len(1)
+            .map(|tally| self.densities(tally))
             .collect();
-        let guess = self.joint.as_ref().zip(clear.gains.as_ref());
-        let guess = guess.map(|((lattice, pyramid), gains)| {
-            let photons: Vec<f64> = tallies.iter().map(|tally| tally.photons() as f64).collect();
-            let mut sums = Field::new(lattice.size());
-            for (node, (map, photons)) in maps.iter().zip(&photons).enumerate() {
-                let cells = map.iter().zip(&self.solid_angle);
-                let counts = cells.map(|(v, omega)| v.map(|v| v * (omega * photons) as f32));
-                lattice.gather(node, counts, &mut sums);
+        let guess = self.guess(tallies, &signals, &densities);
+        let desks = Desks::default();
+        let maps = flux.par_chunks_mut(PAIR * levels * texels);
+        let maps = maps.zip(error.par_chunks_mut(PAIR * texels)).enumerate();
+        maps.with_max_len(1).for_each(|(pair, (flux, error))| {
+            let nodes = pair * PAIR..(pair * PAIR + PAIR).min(tallies.len());
+            let mut desk = desks.take();
+            self.expect(&mut desk, nodes.clone(), &guess);
+            desk.load(0, &signals[nodes.clone()]);
+            self.filter(&mut desk);
+            for (side, error) in error.chunks_exact_mut(texels).enumerate() {
+                self.errors(&mut desk, side, error);
             }
-            sums.divide(&lattice.exposure(&photons));
-            (lattice, pyramid.apply(sums, gains))
-        });
-        let nodes = maps.into_par_iter().zip(&clear.nodes).enumerate();
-        let filtered = nodes.map(|(node, (mut map, clear))| {
-            let mut out = match &guess {
-                Some((lattice, guess)) => lattice.project(node, guess),
-                None => vec![[0.0; LANES]; map.len()],
-            };
-            for (v, guess) in map.iter_mut().zip(&out) {
-                for (v, guess) in v.iter_mut().zip(guess) {
-                    *v -= guess;
-                }
-            }
-            self.scales.take_apart(map, |band, part| {
-                for ((out, gain), part) in out.iter_mut().zip(&clear.gains[band]).zip(part) {
-                    for (out, v) in out.iter_mut().zip(part) {
-                        *out += gain * v;
+            let escaped = tallies[nodes.clone()].iter().map(|tally| {
+                let unit = 1.0 / (tally.photons() as f64 * PHOTON as f64);
+                let escaped = tally.escaped().into_iter();
+                escaped.map(|sum| sum as f64 * unit).collect::<Vec<_>>()
+            });
+            let escaped: Vec<_> = escaped.collect();
+            for group in 0..levels.div_ceil(SIDE) {
+                let densities = densities[nodes.clone()].iter().map(|node| &node[group]);
+                desk.load(1 + group, densities);
+                self.filter_levels(&mut desk);
+                for (side, escaped) in escaped.iter().enumerate() {
+                    for level in group * SIDE..(group * SIDE + SIDE).min(levels) {
+                        let flux = &mut flux[(side * levels + level) * texels..][..texels];
+                        self.map(&desk, side, level, escaped[level], flux);
                     }
                 }
-            });
-            out
+            }
+            desks.give(desk);
         });
-        filtered.collect()
     }
 
-    /// Densities of the light that met pigment, at some levels.
-    fn densities(&self, tally: &Tally, first: usize) -> Vec<[f32; LANES]> {
-        let unit = 1.0 / (tally.photons() as f64 * PHOTON as f64);
-        let levels = first..(first + LANES).min(tally.levels());
-        let cells = self.scales.texels.iter().zip(&self.solid_angle);
-        cells
-            .map(|(&[texel, mirror], omega)| {
-                let mut sums = [0.0; LANES];
-                let (a, b) = (tally.run(texel), tally.run(mirror));
-                for (sum, level) in sums.iter_mut().zip(levels.clone()) {
-                    *sum = (0.5 * (a[level] as f64 + b[level] as f64) * unit / omega) as f32;
-                }
-                sums
-            })
-            .collect()
-    }
-
-    /// Flux fractions of a level, of the sum that was counted.
-    fn map(&self, tally: &Tally, level: usize, bare: &[f32], colored: &[[f32; LANES]]) -> Vec<f32> {
-        let unit = 1.0 / (tally.photons() as f64 * PHOTON as f64);
-        let escaped = tally.escaped(level) as f64 * unit;
-        let value = |cell: usize| {
-            let density = bare[cell].max(0.0) + colored[cell][level % LANES].max(0.0);
-            f64::from(density) * self.solid_angle[cell]
+    /// Filters what is on a desk: takes apart what photons say against the guess and keeps what is not noise,
+    /// in all lanes.
+    fn filter(&self, desk: &mut Desk) {
+        let (caution, whole) = match self.joint {
+            Some(_) => (CAUTION_AFTER_GUESS, self.scales.bands()),
+            // The mean over everything is not noise.
+            None => (CAUTION, self.scales.bands() - 1),
         };
+        desk.filter(&self.scales, caution, whole);
+    }
+
+    /// Filters levels as the clear one was.
+    fn filter_levels(&self, desk: &mut Desk) {
+        desk.filter_levels(&self.scales);
+    }
+
+    /// Flux fractions of a level.
+    ///
+    /// * `escaped`: their sum.
+    fn map(&self, desk: &Desk, side: usize, level: usize, escaped: f64, map: &mut [f32]) {
+        let lanes = [side * SIDE, side * SIDE + level % SIDE];
+        let cells = desk.kinds.iter().zip(&desk.levels).zip(&self.solid_angle);
+        let values = cells.map(|((kinds, levels), omega)| {
+            let density = kinds[lanes[0]].max(0.0) + levels[lanes[1]].max(0.0);
+            f64::from(density) * omega
+        });
         let copies = |[texel, mirror]: [usize; 2]| if texel == mirror { 1.0 } else { 2.0 };
-        let cells = self.scales.texels.iter().enumerate();
-        let sum: f64 = cells.clone().map(|(i, &t)| copies(t) * value(i)).sum();
+        let texels = &self.scales.texels;
+        let sum: f64 = values
+            .clone()
+            .zip(texels)
+            .map(|(v, &t)| copies(t) * v)
+            .sum();
         let scale = if sum > 0.0 { escaped / sum } else { 0.0 };
-        let mut map = vec![0.0; tally.texels()];
-        for (cell, &[texel, mirror]) in cells {
-            let value = (scale * value(cell)) as f32;
+        for (value, &[texel, mirror]) in values.zip(texels) {
+            let value = (scale * value) as f32;
             (map[texel], map[mirror]) = (value, value);
         }
-        map
     }
 
-    /// Relative standard errors per texel.
-    fn errors(&self, texels: usize, bare: &Filtered, colored: &Filtered) -> Vec<f32> {
-        let power = |filtered: &Filtered| {
-            let squares = filtered.noise.iter().map(|v| [v * v]).collect();
-            self.scales.around(0, squares)
-        };
-        let (a, b) = (power(bare), power(colored));
-        let mut error = vec![f32::INFINITY; texels];
-        for (cell, &[texel, mirror]) in self.scales.texels.iter().enumerate() {
-            let mean = bare.mean[cell].max(0.0) + colored.mean[cell].max(0.0);
-            if mean > 0.0 {
-                let value = (a[cell][0] + b[cell][0]).sqrt() / mean;
-                (error[texel], error[mirror]) = (value, value);
-            }
+    /// Relative standard errors per texel of one side of a desk.
+    fn errors(&self, desk: &mut Desk, side: usize, error: &mut [f32]) {
+        let Desk {
+            kinds,
+            squares: [squares, other],
+            ..
+        } = desk;
+        let noise = [side * SIDE + 1, side * SIDE + 3];
+        squares.clear();
+        squares.extend(kinds.iter().map(|v| noise.map(|lane| v[lane] * v[lane])));
+        self.scales.around(0, squares, other);
+        let cells = kinds.iter().zip(&*squares).zip(&self.scales.texels);
+        for ((v, [a, b]), &[texel, mirror]) in cells {
+            let mean = v[side * SIDE].max(0.0) + v[side * SIDE + 2].max(0.0);
+            let value = match mean > 0.0 {
+                true => (a + b).sqrt() / mean,
+                false => f32::INFINITY,
+            };
+            (error[texel], error[mirror]) = (value, value);
         }
-        error
     }
 }
 
-/// Levels that are filtered side by side: as many as a SIMD register of plain x86-64 holds.
-const LANES: usize = 4;
-
 /// The share of a band's power that is signal.
+#[inline(always)]
 fn share(all: f32, noise: f32, caution: f32) -> f32 {
     let signal = all - (1.0 + caution) * noise;
     if signal > 0.0 { signal / all } else { 0.0 }
 }
+
 #[cfg(test)]
 mod tests;

@@ -6,13 +6,19 @@
 //! explain; what comes out shows where signal is, and with that the shares are taken again
 //! (empirical Wiener filtering in two steps, Ghael, Sayeed and Baraniuk 1997).
 
-use super::field::{Field, Plane};
+use super::around::Surroundings;
+use super::azimuth;
+use super::field::{Field, Plane, Pool};
+use crate::math::widest;
 
-/// Shares of all bands, in the order in which they are met.
-pub(super) struct Gains {
-    planes: Vec<Vec<Plane>>,
-    bands: Vec<Vec<f32>>,
-}
+/// Most cells around that a row and its scales have.
+const MOST: usize = 128;
+
+/// Exposure at all steps along x and y, the latter running fastest.
+pub(super) struct Planes(Vec<Vec<Plane>>);
+
+/// Shares of all bands: for each pair of steps along x and y the bands of every row.
+pub(super) struct Gains(Vec<Vec<f32>>);
 
 /// How a lattice is taken apart.
 #[derive(Debug)]
@@ -37,54 +43,8 @@ impl Pyramid {
         }
     }
 
-    /// Shows all bands of a field in a fixed order and puts together what it is given for them.
-    fn walk<const N: usize>(
-        &self,
-        planes: &[Vec<Plane>],
-        field: Field<N>,
-        band: &mut impl FnMut([usize; 3], Field<N>) -> Option<Field<N>>,
-    ) -> Option<Field<N>> {
-        self.scale(0, [0; 3], planes, field, band)
-    }
-
-    fn scale<const N: usize>(
-        &self,
-        axis: usize,
-        steps: [usize; 3],
-        planes: &[Vec<Plane>],
-        mut field: Field<N>,
-        band: &mut impl FnMut([usize; 3], Field<N>) -> Option<Field<N>>,
-    ) -> Option<Field<N>> {
-        if axis == 3 {
-            return band(steps, field);
-        }
-        if steps[axis] == self.depth[axis] {
-            return self.scale(axis + 1, steps, planes, field, band);
-        }
-        let mut next = steps;
-        next[axis] += 1;
-        let inside = [steps, next].map(|steps| &planes[steps[0]][steps[1]]);
-        let coarse = if axis == 2 {
-            let coarse = field.narrowed();
-            field.add_narrow(-1.0, &coarse);
-            coarse
-        } else {
-            let coarse = field.reduced(axis, Some(inside[0]));
-            field.add_coarse(axis, -1.0, &coarse, Some(inside));
-            coarse
-        };
-        let fine = self.scale(axis + 1, steps, planes, field, band);
-        let coarse = self.scale(axis, next, planes, coarse, band);
-        let (mut fine, coarse) = (fine?, coarse?);
-        match axis {
-            2 => fine.add_narrow(1.0, &coarse),
-            _ => fine.add_coarse(axis, 1.0, &coarse, Some(inside)),
-        }
-        Some(fine)
-    }
-
-    /// Exposure at all steps along x and y.
-    fn planes(&self, exposure: Plane) -> Vec<Vec<Plane>> {
+    /// Exposure at all steps.
+    pub(super) fn planes(&self, exposure: Plane) -> Planes {
         let mut planes = vec![vec![exposure]];
         for a in 1..=self.depth[0] {
             planes.push(vec![planes[a - 1][0].reduced(0)]);
@@ -94,7 +54,60 @@ impl Pyramid {
                 along_y.push(along_y[c - 1].reduced(1));
             }
         }
-        planes
+        Planes(planes)
+    }
+
+    /// Cells of a row and its scales around.
+    fn cells(&self) -> usize {
+        azimuth::cells(self.size[2], self.depth[2])
+    }
+
+    /// Number of a pair of steps along x and y.
+    fn number(&self, steps: [usize; 2]) -> usize {
+        steps[0] * (self.depth[1] + 1) + steps[1]
+    }
+
+    /// Takes a field apart along x and y.
+    ///
+    /// * `again`: whether what `band` leaves of the parts is put together again.
+    fn walk<const N: usize>(
+        &self,
+        planes: &Planes,
+        field: &mut Field<N>,
+        again: bool,
+        band: &mut impl FnMut([usize; 2], &mut Field<N>),
+    ) {
+        self.scale(0, [0; 2], planes, field, &mut Pool::default(), again, band);
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "one place in a recursion")]
+    fn scale<const N: usize>(
+        &self,
+        axis: usize,
+        steps: [usize; 2],
+        planes: &Planes,
+        field: &mut Field<N>,
+        pool: &mut Pool<N>,
+        again: bool,
+        band: &mut impl FnMut([usize; 2], &mut Field<N>),
+    ) {
+        if axis == 2 {
+            return band(steps, field);
+        }
+        if steps[axis] == self.depth[axis] {
+            return self.scale(axis + 1, steps, planes, field, pool, again, band);
+        }
+        let mut next = steps;
+        next[axis] += 1;
+        let inside = [steps, next].map(|steps| planes.at(steps));
+        let mut coarse = field.reduced(axis, Some(inside[0]), pool);
+        field.add_coarse(axis, -1.0, &coarse, Some(inside));
+        self.scale(axis + 1, steps, planes, field, pool, again, band);
+        self.scale(axis, next, planes, &mut coarse, pool, again, band);
+        if again {
+            field.add_coarse(axis, 1.0, &coarse, Some(inside));
+        }
+        pool.give(coarse);
     }
 
     /// The shares to keep of S.
@@ -102,132 +115,157 @@ impl Pyramid {
     /// * `s`: photons over exposure; `squares`: variance of the photons.
     pub(super) fn gains(
         &self,
+        planes: &Planes,
         s: &Field<1>,
         squares: Field<1>,
-        exposure: Plane,
         caution: f32,
     ) -> Gains {
-        let planes = self.planes(exposure);
-        // All means of squares that bands are held against, azimuth running fastest.
-        let mut noise = Vec::new();
-        let mut along_x = squares;
-        for a in 0..=self.depth[0] {
-            let mut along_y = along_x.clone();
-            for c in 0..=self.depth[1] {
-                let mut around = along_y.clone();
-                for b in 0..=self.depth[2] {
-                    let next = (b < self.depth[2]).then(|| around.narrowed());
-                    noise.push(std::mem::replace(
-                        &mut around,
-                        next.unwrap_or(Field::new([0; 3])),
-                    ));
-                }
-                if c < self.depth[1] {
-                    along_y = along_y.reduced(1, None);
+        let mut pool = Pool::default();
+        let noise = self.noise(planes, squares, &mut pool);
+        let [np, depth] = [self.size[2], self.depth[2]];
+        let around = Surroundings { np, depth };
+        // The coarsest band of all is kept whole.
+        let keep_last = |steps: [usize; 2], gains: &mut Field<1>| {
+            if steps == [self.depth[0], self.depth[1]] {
+                let cells = gains.size[2];
+                for row in gains.values.chunks_exact_mut(cells) {
+                    row[cells - (np >> depth)..].fill([1.0]);
                 }
             }
-            if a < self.depth[0] {
-                along_x = along_x.reduced(0, None);
-            }
-        }
-        let local = |steps: [usize; 3], field: &Field<1>, share: fn(f32, f32, f32) -> f32| {
-            if steps == self.depth {
-                return vec![1.0; field.values.len()];
-            }
-            let [a, c, b] = steps;
-            let of = (a * (self.depth[1] + 1) + c) * (self.depth[2] + 1) + b;
-            let norm: f32 = (0..3).map(|axis| self.norms[axis][steps[axis]]).product();
-            around(field, &noise[of], &planes[a][c], norm, |all, noise| {
-                share(all, noise, caution)
-            })
         };
-        let mut clean = self
-            .walk(&planes, s.clone(), &mut |steps, mut field| {
-                let gains = local(steps, &field, |all, noise, caution| {
-                    super::share(all, noise, caution)
-                });
-                for (v, gain) in field.values.iter_mut().zip(gains) {
-                    v[0] *= gain;
-                }
-                Some(field)
-            })
-            .unwrap_or_else(|| s.clone());
+        let mut clean = s.clone();
+        self.walk(planes, &mut clean, true, &mut |steps, field| {
+            let (plane, noise) = (planes.at(steps), &noise[self.number(steps)]);
+            let mut bands = self.split(plane, field, &mut pool);
+            let mut gains = around.shares(&bands, plane, noise, &mut pool, |all, noise| {
+                super::share(all, noise, caution)
+            });
+            keep_last(steps, &mut gains);
+            widest(
+                #[inline(always)]
+                || {
+                    let cells = bands.size[2];
+                    let rows = bands.values.chunks_exact_mut(cells);
+                    let rows = rows.zip(gains.values.chunks_exact(cells));
+                    let rows = rows.zip(field.values.chunks_exact_mut(np));
+                    for (((bands, gains), field), _) in rows.zip(&plane.values).filter(inside) {
+                        for (v, gain) in bands.iter_mut().zip(gains) {
+                            v[0] *= gain[0];
+                        }
+                        azimuth::join(bands, np, depth);
+                        field.copy_from_slice(&bands[..np]);
+                    }
+                },
+            );
+            pool.give(bands);
+            pool.give(gains);
+        });
         clean.values.iter_mut().for_each(|v| v[0] = v[0].max(0.0));
-        let mut bands = Vec::new();
-        self.walk(&planes, clean, &mut |steps, field| {
-            bands.push(local(steps, &field, |signal, noise, _| {
+        let mut all = Vec::new();
+        self.walk(planes, &mut clean, false, &mut |steps, field| {
+            let (plane, noise) = (planes.at(steps), &noise[self.number(steps)]);
+            let bands = self.split(plane, field, &mut pool);
+            let mut gains = around.shares(&bands, plane, noise, &mut pool, |signal, noise| {
                 if signal > 0.0 {
                     signal / (signal + noise)
                 } else {
                     0.0
                 }
-            }));
-            None
+            });
+            keep_last(steps, &mut gains);
+            pool.give(bands);
+            all.push(gains.values.into_flattened());
         });
-        Gains { planes, bands }
+        Gains(all)
+    }
+
+    /// The bands around of every row that is anything.
+    fn split(&self, plane: &Plane, field: &Field<1>, pool: &mut Pool<1>) -> Field<1> {
+        let [nx, ny, np] = field.size;
+        let mut bands = pool.field([nx, ny, self.cells()]);
+        widest(
+            #[inline(always)]
+            || {
+                let rows = bands.values.chunks_exact_mut(self.cells());
+                let rows = rows.zip(field.values.chunks_exact(np));
+                for ((bands, field), _) in rows.zip(&plane.values).filter(inside) {
+                    bands[..np].copy_from_slice(field);
+                    azimuth::split(bands, np, self.depth[2]);
+                }
+            },
+        );
+        bands
+    }
+
+    /// What noise puts into the surroundings of every place of every band.
+    fn noise(&self, planes: &Planes, squares: Field<1>, pool: &mut Pool<1>) -> Vec<Field<1>> {
+        let [np, depth] = [self.size[2], self.depth[2]];
+        let around = Surroundings { np, depth };
+        let mut noise = Vec::new();
+        let mut along_x = squares;
+        for a in 0..=self.depth[0] {
+            let mut along_y = along_x.clone();
+            for c in 0..=self.depth[1] {
+                let norms: Vec<f32> = self.norms[2]
+                    .iter()
+                    .map(|norm| self.norms[0][a] * self.norms[1][c] * norm)
+                    .collect();
+                noise.push(around.noise(&along_y, planes.at([a, c]), &norms, pool));
+                if c < self.depth[1] {
+                    let next = along_y.reduced(1, None, pool);
+                    pool.give(std::mem::replace(&mut along_y, next));
+                }
+            }
+            pool.give(along_y);
+            if a < self.depth[0] {
+                let next = along_x.reduced(0, None, pool);
+                pool.give(std::mem::replace(&mut along_x, next));
+            }
+        }
+        noise
     }
 
     /// S with only those shares of its bands.
-    pub(super) fn apply<const N: usize>(&self, field: Field<N>, gains: &Gains) -> Field<N> {
-        let mut bands = gains.bands.iter();
-        let kept = self.walk(&gains.planes, field, &mut |_, mut field| {
-            for (v, gain) in field.values.iter_mut().zip(bands.next()?) {
-                *v = v.map(|v| v * gain);
-            }
-            Some(field)
+    ///
+    /// * `gains`: of the first two lanes and of the others.
+    pub(super) fn apply(&self, planes: &Planes, field: &mut Field<4>, gains: [&Gains; 2]) {
+        let [np, depth] = [self.size[2], self.depth[2]];
+        let cells = self.cells();
+        self.walk(planes, field, true, &mut |steps, field| {
+            let [first, others] = gains.map(|gains| &gains.0[self.number(steps)]);
+            let plane = planes.at(steps);
+            widest(
+                #[inline(always)]
+                || {
+                    let mut bands = [[0.0; 4]; MOST];
+                    let bands = &mut bands[..cells];
+                    let rows = field.values.chunks_exact_mut(np);
+                    let rows = rows.zip(first.chunks_exact(cells));
+                    let rows = rows.zip(others.chunks_exact(cells));
+                    for (((field, first), others), _) in rows.zip(&plane.values).filter(inside) {
+                        bands[..np].copy_from_slice(field);
+                        azimuth::split(bands, np, depth);
+                        for (v, (a, b)) in bands.iter_mut().zip(first.iter().zip(others)) {
+                            *v = [v[0] * a, v[1] * a, v[2] * b, v[3] * b];
+                        }
+                        azimuth::join(bands, np, depth);
+                        field.copy_from_slice(&bands[..np]);
+                    }
+                },
+            );
         });
-        kept.unwrap_or_else(|| Field::new(self.size))
     }
 }
 
-/// Shares of a band from its power and that of noise around every place, in common units.
-fn around(
-    field: &Field<1>,
-    squares: &Field<1>,
-    exposure: &Plane,
-    norm: f32,
-    share: impl Fn(f32, f32) -> f32,
-) -> Vec<f32> {
-    let np = field.size[2];
-    let mut power: Field<2> = Field::new(field.size);
-    for (row, to) in power.values.chunks_exact_mut(np).enumerate() {
-        let scale = exposure.values[row].powi(2);
-        if scale > 0.0 {
-            let from = field.row(row).iter().zip(squares.row(row));
-            for (to, (v, squares)) in to.iter_mut().zip(from) {
-                *to = [scale * v[0] * v[0], norm * squares[0]];
-            }
-        }
+/// Whether photons reach a row.
+fn inside<T>((_, exposure): &(T, &f32)) -> bool {
+    **exposure > 0.0
+}
+
+impl Planes {
+    fn at(&self, steps: [usize; 2]) -> &Plane {
+        &self.0[steps[0]][steps[1]]
     }
-    let halved = [0, 1, 2].map(|axis| field.size[axis].is_multiple_of(2));
-    for axis in [0, 1] {
-        if halved[axis] {
-            power = power.reduced(axis, None);
-        }
-    }
-    if halved[2] {
-        power = power.narrowed();
-    }
-    let mut gains: Field<1> = Field::new(power.size);
-    for (gain, [all, noise]) in gains.values.iter_mut().zip(&power.values) {
-        gain[0] = share(*all, *noise);
-    }
-    if halved[2] {
-        let [nx, ny, np] = gains.size;
-        let mut wide = Field::new([nx, ny, 2 * np]);
-        wide.add_narrow(1.0, &gains);
-        gains = wide;
-    }
-    for axis in [1, 0] {
-        if halved[axis] {
-            let mut size = gains.size;
-            size[axis] *= 2;
-            let mut wide = Field::new(size);
-            wide.add_coarse(axis, 1.0, &gains, None);
-            gains = wide;
-        }
-    }
-    gains.values.into_iter().map(|[gain]| gain).collect()
 }
 
 /// Squared norms along one axis: what the bands hold, a cell, of noise of variance 1 a cell.
@@ -235,20 +273,16 @@ fn norms(cells: usize, depth: usize) -> Vec<f32> {
     let mut sums = vec![0.0; depth + 1];
     // Impulses at as many places as the coarsest step can tell apart, in the middle.
     let places = (1 << depth).min(cells);
+    let mut bands = vec![[0.0f32]; azimuth::cells(cells, depth)];
     for place in 0..places {
-        let mut field: Field<1> = Field::new([1, 1, cells]);
-        field.values[(cells - places) / 2 + place] = [1.0];
-        for (step, sum) in sums.iter_mut().enumerate() {
-            let coarse = (step < depth).then(|| field.narrowed());
-            if let Some(coarse) = &coarse {
-                field.add_narrow(-1.0, coarse);
-            }
-            let power: f32 = field.values.iter().map(|v| v[0] * v[0]).sum();
+        bands.fill([0.0]);
+        bands[(cells - places) / 2 + place] = [1.0];
+        azimuth::split(&mut bands, cells, depth);
+        let segments = azimuth::segments(cells, depth);
+        for (step, ([from, to], sum)) in segments.zip(&mut sums).enumerate() {
+            let power: f32 = bands[from..to].iter().map(|v| v[0] * v[0]).sum();
             // One impulse in all cells of a band: so many cells of the lattice a cell of it.
             *sum += power * (1 << step) as f32 / places as f32;
-            if let Some(coarse) = coarse {
-                field = coarse;
-            }
         }
     }
     sums
@@ -292,13 +326,10 @@ mod tests {
         let pyramid = Pyramid::new(size);
         let (exposure, s, _) = scene(size);
         let planes = pyramid.planes(exposure);
-        let mut bands = 0;
-        let same = pyramid.walk(&planes, s.clone(), &mut |_, band| {
-            bands += 1;
-            Some(band)
-        });
-        assert_eq!(bands, 3 * 3 * 4);
-        for (a, b) in same.unwrap().values.iter().zip(&s.values) {
+        let (mut bands, mut same) = (0, s.clone());
+        pyramid.walk(&planes, &mut same, true, &mut |_, _| bands += 1);
+        assert_eq!(bands, 3 * 3);
+        for (a, b) in same.values.iter().zip(&s.values) {
             assert!((a[0] - b[0]).abs() < 1e-5);
         }
     }
@@ -324,8 +355,14 @@ mod tests {
             (off / count).sqrt()
         };
         let filtered = |s: &Field<1>| {
-            let gains = pyramid.gains(s, squares.clone(), exposure.clone(), 0.5);
-            pyramid.apply(s.clone(), &gains)
+            let planes = pyramid.planes(exposure.clone());
+            let gains = pyramid.gains(&planes, s, squares.clone(), 0.5);
+            let mut fields = Field::new(size);
+            for (to, v) in fields.values.iter_mut().zip(&s.values) {
+                *to = [0.0, 0.0, v[0], 0.0];
+            }
+            pyramid.apply(&planes, &mut fields, [&gains, &gains]);
+            fields.lane(2)
         };
         let (before, after) = (off(&s, false), off(&filtered(&s), false));
         assert!(after < 0.2 * before, "{after} of {before}");

@@ -6,8 +6,10 @@
 //! smoothing is the cubic B-spline "a trous" (Starck, Murtagh and Fadili 2010), which has no grid
 //! of its own to shift or to resample to: its taps are the texels at given angles.
 
-use crate::math::frame;
 use crate::math::unicube::Unicube;
+use crate::math::{frame, widest};
+use glam::DVec3;
+use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
 /// The cubic B-spline at -2, -1, 0, 1, 2.
@@ -48,19 +50,27 @@ impl Scales {
         // structure that noise could hide.
         let depth = cube.res().trailing_zeros() as usize;
         let step = FRAC_PI_2 / cube.res() as f64;
+        // Inclination and azimuth of every cell, with their sines and cosines.
+        let at = |&[texel, _]: &[usize; 2]| {
+            let (w, _) = cube.direction(texel, 0.5, 0.5);
+            let (theta, phi) = (frame::theta_of(w), w.y.atan2(w.x));
+            (theta, phi, theta.sin_cos(), phi.sin_cos())
+        };
+        let places: Vec<_> = texels.par_iter().with_min_len(256).map(at).collect();
         let taps = |scale: usize, along_theta: bool| -> Taps {
-            let tap = |texel: usize, offset: f64| {
-                let (w, _) = cube.direction(texel, 0.5, 0.5);
-                let angle = offset * step * f64::from(1u32 << scale);
-                let (theta, phi) = (frame::theta_of(w), w.y.atan2(w.x));
-                let to = match along_theta {
-                    true => frame::direction(theta + angle, phi),
-                    false => frame::direction(theta, phi + angle),
-                };
-                cells[cube.texel(to)]
-            };
-            let texels = texels.iter();
-            texels.map(|&[t, _]| OFFSETS.map(|o| tap(t, o))).collect()
+            let places = places.par_iter().with_min_len(256);
+            let taps = places.map(|&(theta, phi, at_theta, at_phi)| {
+                OFFSETS.map(|offset| {
+                    let angle = offset * step * f64::from(1u32 << scale);
+                    let ((sin_t, cos_t), (sin_p, cos_p)) = match along_theta {
+                        true => ((theta + angle).sin_cos(), at_phi),
+                        false => (at_theta, (phi + angle).sin_cos()),
+                    };
+                    let to = DVec3::new(cos_t * cos_p, cos_t * sin_p, sin_t);
+                    cells[cube.texel(to)]
+                })
+            });
+            taps.collect()
         };
         Self {
             theta: (0..depth.saturating_sub(2).min(most))
@@ -80,47 +90,49 @@ impl Scales {
 
     /// Takes maps apart and shows every band. Their sum is the maps.
     ///
-    /// * `maps`: `N` densities a cell.
+    /// * `maps`: `N` densities a cell in the first of the buffers, whose contents are lost.
     /// * `see`: gets the number of the band and its part of the maps.
     pub(super) fn take_apart<const N: usize>(
         &self,
-        maps: Vec<[f32; N]>,
+        [rest, smooth, row, wide]: &mut [Vec<[f32; N]>; 4],
         mut see: impl FnMut(usize, &[[f32; N]]),
     ) {
-        let mut smooth = vec![[0.0; N]; maps.len()];
-        let mut rest = maps;
-        let mut row = vec![[0.0; N]; rest.len()];
-        let mut wide = row.clone();
+        let cells = rest.len();
+        for buffer in [&mut *smooth, row, wide] {
+            buffer.resize(cells, [0.0; N]);
+        }
         let mut band = 0;
         for theta in 0..=self.theta.len() {
             // What this scale of inclination holds, then along azimuth.
             if let Some(taps) = self.theta.get(theta) {
-                blur(taps, &rest, &mut smooth);
-                difference(&rest, &smooth, &mut row);
-                std::mem::swap(&mut rest, &mut smooth);
+                blur_and_take(taps, rest, smooth, row);
+                std::mem::swap(rest, smooth);
             } else {
-                row.copy_from_slice(&rest);
+                row.copy_from_slice(rest);
             }
             for taps in &self.phi {
-                blur(taps, &row, &mut wide);
-                subtract(&mut row, &wide);
-                see(band, &row);
+                // `smooth` is free until the next scale of inclination.
+                blur_and_take(taps, row, wide, smooth);
+                see(band, smooth);
                 band += 1;
-                std::mem::swap(&mut row, &mut wide);
+                std::mem::swap(row, wide);
             }
-            see(band, &row);
+            see(band, row);
             band += 1;
         }
     }
 
     /// Means over the surroundings that a band's coefficients have in common.
+    ///
+    /// * `maps`, `other`: the maps, which end where they began, and as much memory.
     pub(super) fn around<const N: usize>(
         &self,
         band: usize,
-        mut maps: Vec<[f32; N]>,
-    ) -> Vec<[f32; N]> {
+        maps: &mut Vec<[f32; N]>,
+        other: &mut Vec<[f32; N]>,
+    ) {
+        other.resize(maps.len(), [0.0; N]);
         let (theta, phi) = (band / (self.phi.len() + 1), band % (self.phi.len() + 1));
-        let mut out = maps.clone();
         // Twice as wide as the taps that made the band.
         let wider = |all: &[Taps], scale: usize| (scale + 1).min(all.len().saturating_sub(1));
         for (all, scale) in [
@@ -130,40 +142,55 @@ impl Scales {
             (&self.phi, phi + 1),
         ] {
             if let Some(taps) = all.get(wider(all, scale)) {
-                blur(taps, &maps, &mut out);
-                std::mem::swap(&mut maps, &mut out);
+                blur(taps, maps, other);
+                std::mem::swap(maps, other);
             }
         }
-        maps
     }
 }
 
 fn blur<const N: usize>(taps: &Taps, from: &[[f32; N]], to: &mut [[f32; N]]) {
-    for ((to, here), taps) in to.iter_mut().zip(from).zip(taps) {
-        let mut sum = here.map(|v| CENTER * v);
-        for (&cell, weight) in taps.iter().zip(TAPS) {
-            for (sum, v) in sum.iter_mut().zip(from[cell as usize]) {
-                *sum += weight * v;
+    widest(
+        #[inline(always)]
+        || {
+            for ((to, here), taps) in to.iter_mut().zip(from).zip(taps) {
+                *to = blurred(here, taps, from);
             }
-        }
-        *to = sum;
-    }
+        },
+    );
 }
 
-fn difference<const N: usize>(a: &[[f32; N]], b: &[[f32; N]], to: &mut [[f32; N]]) {
-    for ((to, a), b) in to.iter_mut().zip(a).zip(b) {
-        for ((to, a), b) in to.iter_mut().zip(a).zip(b) {
-            *to = a - b;
-        }
-    }
+/// Blurs, and what that takes away.
+fn blur_and_take<const N: usize>(
+    taps: &Taps,
+    from: &[[f32; N]],
+    smooth: &mut [[f32; N]],
+    rest: &mut [[f32; N]],
+) {
+    widest(
+        #[inline(always)]
+        || {
+            let cells = smooth.iter_mut().zip(rest).zip(from).zip(taps);
+            for (((smooth, rest), here), taps) in cells {
+                let sum = blurred(here, taps, from);
+                for ((rest, here), sum) in rest.iter_mut().zip(here).zip(sum) {
+                    *rest = here - sum;
+                }
+                *smooth = sum;
+            }
+        },
+    );
 }
 
-fn subtract<const N: usize>(a: &mut [[f32; N]], b: &[[f32; N]]) {
-    for (a, b) in a.iter_mut().zip(b) {
-        for (a, b) in a.iter_mut().zip(b) {
-            *a -= b;
+#[inline(always)]
+fn blurred<const N: usize>(here: &[f32; N], taps: &[u32; 4], from: &[[f32; N]]) -> [f32; N] {
+    let mut sum = here.map(|v| CENTER * v);
+    for (&cell, weight) in taps.iter().zip(TAPS) {
+        for (sum, v) in sum.iter_mut().zip(from[cell as usize]) {
+            *sum += weight * v;
         }
     }
+    sum
 }
 
 #[cfg(test)]
@@ -184,7 +211,8 @@ mod tests {
                 .collect();
             let mut sum = vec![0.0; map.len()];
             let mut bands = 0;
-            scales.take_apart(map.clone(), |band, part| {
+            let mut buffers = [map.clone(), Vec::new(), Vec::new(), Vec::new()];
+            scales.take_apart(&mut buffers, |band, part| {
                 assert_eq!(band, bands);
                 bands += 1;
                 for (sum, part) in sum.iter_mut().zip(part) {

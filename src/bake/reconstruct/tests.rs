@@ -118,8 +118,11 @@ fn the_filter_vanishes_as_photons_come_in() {
         let tally = lobe(&cube, copies);
         let filter = Reconstruction::new(&cube, &Nodes::new(Mode::Cone, 16), true);
         // All nodes alike: not what S is like, so that the guess is wrong and has to be put right.
-        let maps = filter.maps(&vec![tally.clone(); 16]);
-        let filtered = &maps[5].flux;
+        let (texels, levels) = (tally.texels(), tally.levels());
+        let mut flux = vec![0.0; 16 * levels * texels];
+        let mut error = vec![0.0; 16 * texels];
+        filter.maps(&vec![tally.clone(); 16], &mut flux, &mut error);
+        let filtered = &flux[5 * levels * texels..6 * levels * texels];
         let mut folded = tally.clone();
         folded.fold(&cube);
         let raw = folded.flux();

@@ -124,6 +124,7 @@ enum ModeArg {
 /// Runs the command.
 pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     let start = Instant::now();
+    super::memory::take_in_large_pieces();
     super::with_threads(args.threads, || run::run(args, start, console))?
 }
 

@@ -17,9 +17,6 @@ pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), 
     let class = find_class(&species, args.class.as_deref())?;
     let station = find_station(class, args.station)?;
     let settings = settings(args);
-    let until = args
-        .time
-        .map(|time| start + time - writing(&settings).min(time / 2));
     check_output(args)?;
     check_writable(&args.output)?;
     if station.structure.mesh.is_some() {
@@ -29,8 +26,9 @@ pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), 
         }
     }
     let band = class.band_at(station.at);
-    let job = Job {
+    let mut job = Job {
         args,
+        start,
         console,
         structure: &station.structure,
         settings,
@@ -41,7 +39,7 @@ pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), 
             .then(|| band.absorption_per_um()),
         goal: Goal {
             error: args.target_error,
-            until,
+            until: None,
         },
         cache: Cache::of_user().filter(|_| !args.no_cache),
     };
@@ -56,7 +54,7 @@ pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), 
 
 /// About how long a table takes to be written and to be safe on a disk.
 fn writing(settings: &Settings) -> Duration {
-    const SECONDS_A_BYTE: f64 = 3e-9;
+    const SECONDS_A_BYTE: f64 = 2e-9;
     let samples =
         settings.nodes() * 6 * settings.face * settings.face * (settings.levels.len() + 1);
     Duration::from_secs_f64(4.0 * samples as f64 * SECONDS_A_BYTE)
@@ -84,6 +82,8 @@ fn check_output(args: &Args) -> Result<(), Failure> {
 
 struct Job<'a> {
     args: &'a Args,
+    /// When the command began.
+    start: Instant,
     console: &'a Console,
     structure: &'a Structure,
     settings: Settings,
@@ -94,7 +94,7 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn run(&self) -> Result<(), Failure> {
+    fn run(&mut self) -> Result<(), Failure> {
         let (args, console) = (self.args, self.console);
         if args.shard.is_none()
             && !args.restart
@@ -107,6 +107,11 @@ impl Job<'_> {
             return Ok(());
         }
         let bake = self.bake()?;
+        self.goal.until = args.time.map(|time| {
+            // Everything is to be said by then.
+            let after = writing(&self.settings) + bake.estimating();
+            self.start + time - after.min(time / 2)
+        });
         if self.is_done_shard(&bake) {
             console.say(format!("{} holds this shard", args.output.display()));
             return Ok(());

@@ -7,6 +7,7 @@ use crate::fiber::convex::{Convex, Plane, Quadric};
 use crate::fiber::voronoi::{PolyFace, Polyhedron};
 use crate::sampling::Rng;
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 /// Edge of the body-centered cube over the mean width of its cell, the truncated octahedron: widths
 /// are 1 edge across squares and 0.87 across hexagons.
@@ -84,9 +85,8 @@ fn fill(room: &Room<'_>, mut seeds: Vec<DVec3>, edge: f64, wall_um: f64) -> Latt
     // In order of z, so that the search for neighbors stops early.
     seeds.sort_by(|a, b| a.z.total_cmp(&b.z));
     let semi = room.semi - 0.5 * wall_um;
-    let mut filled = wall_um >= LEAST_WALL_UM;
-    let (mut voids, mut cells) = (Vec::new(), Vec::new());
-    for (index, &center) in seeds.iter().enumerate() {
+    let cells = seeds.par_iter().enumerate().map(|(index, &center)| {
+        let mut filled = true;
         let (polyhedron, others) = cut(&seeds, index, room.period, edge * REACH);
         let mut faces = faces(&polyhedron, &others, wall_um);
         let half = polyhedron
@@ -96,7 +96,7 @@ fn fill(room: &Room<'_>, mut seeds: Vec<DVec3>, edge: f64, wall_um: f64) -> Latt
             // The void ends in the cube, the space round it only at the neighbors.
             let cube = Polyhedron::cuboid(DVec3::splat(edge * REACH));
             let (wide, others) = cut(&seeds, index, room.period, edge * WIDE);
-            filled &= !is_open(&wide, center, semi);
+            filled = !is_open(&wide, center, semi);
             faces = self::faces(&wide, &others, wall_um);
             faces.retain(|f| !f.next.is_empty());
             faces.extend(self::faces(&cube, &[], wall_um));
@@ -105,7 +105,7 @@ fn fill(room: &Room<'_>, mut seeds: Vec<DVec3>, edge: f64, wall_um: f64) -> Latt
             normal: f.normal,
             offset: f.void,
         });
-        voids.push(Convex {
+        let void = Convex {
             center,
             half,
             planes: planes.collect(),
@@ -114,15 +114,19 @@ fn fill(room: &Room<'_>, mut seeds: Vec<DVec3>, edge: f64, wall_um: f64) -> Latt
                 semi.extend(f64::INFINITY),
             )],
             island: false,
-        });
+        };
         let radius2 = |p: DVec3| ((center + p).truncate() / semi).length_squared();
-        cells.push(Cell {
+        let cell = Cell {
             center,
             faces,
             air: true,
             rim: polyhedron.corners().any(|p| radius2(p) > 0.999),
-        });
-    }
+        };
+        (void, cell, filled)
+    });
+    let all: Vec<(Convex, Cell, bool)> = cells.collect();
+    let filled = wall_um >= LEAST_WALL_UM && all.iter().all(|(.., filled)| *filled);
+    let (voids, cells): (Vec<_>, Vec<_>) = all.into_iter().map(|(v, c, _)| (v, c)).unzip();
     Lattice {
         voids,
         cells: filled.then(|| Cells::new(&cells, semi, room.period, edge)),

@@ -227,7 +227,7 @@ fn take_channel(part: &mut Part, name: &str) -> Result<Vec<f32>, TableError> {
     let found = part.channels.iter_mut().find(|(n, _)| n == name);
     let (_, samples) =
         found.ok_or_else(|| wrong(format!("part {} has no channel {name}", part.name)))?;
-    Ok(std::mem::take(samples))
+    Ok(std::mem::take(samples).into_owned())
 }
 
 /// Three channels as one value a texel.

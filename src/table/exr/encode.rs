@@ -4,19 +4,20 @@ use super::attributes::Attributes;
 use super::parts::Part;
 use super::{COLORS, azimuths, error_channel, format_of, level_channel, part_name};
 use crate::table::{Ledger, Mode, Nodes, PHOTON, Provenance, ScatterMaps, StructureTable};
+use std::borrow::Cow;
 
 /// The parts of a structure table.
-pub(super) fn structure(table: &StructureTable) -> Vec<Part> {
+pub(super) fn structure(table: &StructureTable) -> Vec<Part<'_>> {
     let (levels, texels) = (table.levels.len(), table.texels());
     let mut parts = parts(&table.nodes, table.res, |node, attributes| {
         let ledger = &table.ledger[node * levels..(node + 1) * levels];
         put_ledger(attributes, ledger);
         attributes.list("albedo", (0..levels).map(|l| table.albedo(node, l)));
         let mut channels: Vec<_> = (0..levels)
-            .map(|level| (level_channel(level), table.map(node, level).to_vec()))
+            .map(|level| (level_channel(level), table.map(node, level).into()))
             .collect();
         let error = &table.error[node * texels..(node + 1) * texels];
-        channels.push(("error".to_owned(), error.to_vec()));
+        channels.push(("error".to_owned(), error.into()));
         channels
     });
     let head = &mut parts[0].attributes;
@@ -28,14 +29,16 @@ pub(super) fn structure(table: &StructureTable) -> Vec<Part> {
 }
 
 /// The parts of a dyed table.
-pub(super) fn scatter(maps: &ScatterMaps) -> Vec<Part> {
+pub(super) fn scatter(maps: &ScatterMaps) -> Vec<Part<'_>> {
     let texels = maps.texels();
     let mut parts = parts(&maps.nodes, maps.res, |node, attributes| {
         let errors = &maps.error[node * texels..(node + 1) * texels];
         let bakes = maps.bakes();
         put_ledger(attributes, &maps.ledger[node * bakes..(node + 1) * bakes]);
         attributes.list("albedo", maps.albedo(node));
-        let channel = |texels: &[[f32; 3]], c: usize| texels.iter().map(|rgb| rgb[c]).collect();
+        let channel = |texels: &[[f32; 3]], c: usize| -> Cow<'_, [f32]> {
+            Cow::Owned(texels.iter().map(|rgb| rgb[c]).collect())
+        };
         let colors = COLORS.iter().enumerate();
         let flux = colors
             .clone()
@@ -54,12 +57,12 @@ pub(super) fn scatter(maps: &ScatterMaps) -> Vec<Part> {
 
 /// Parts with what both kinds have in common; `fill` adds a node's own attributes and gives its
 /// channels.
-fn parts(
+fn parts<'a>(
     nodes: &Nodes,
     res: usize,
-    fill: impl Fn(usize, &mut Attributes) -> Vec<(String, Vec<f32>)>,
-) -> Vec<Part> {
-    let mut parts: Vec<Part> = (0..nodes.len())
+    fill: impl Fn(usize, &mut Attributes) -> Vec<(String, Cow<'a, [f32]>)>,
+) -> Vec<Part<'a>> {
+    let mut parts: Vec<Part<'a>> = (0..nodes.len())
         .map(|bin| {
             let node = nodes.node_of_part(bin);
             let mut attributes = Attributes::default();

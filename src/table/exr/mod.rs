@@ -8,6 +8,7 @@ mod attributes;
 mod azimuths;
 mod decode;
 mod encode;
+mod headed;
 mod packed;
 mod parts;
 mod raw;
@@ -101,8 +102,7 @@ impl StructureTable {
     /// Writes the table. See [`TableFile::write`].
     pub fn write(&self, path: &Path) -> Result<(), TableError> {
         self.check()?;
-        let bytes = parts::encode(encode::structure(self), path)?;
-        Ok(AtomicFile::write_all_to(path, &bytes)?)
+        parts::write(encode::structure(self), path)
     }
 }
 
@@ -144,8 +144,7 @@ impl ScatterMaps {
     /// Writes the table. See [`TableFile::write`].
     pub fn write(&self, path: &Path) -> Result<(), TableError> {
         self.check()?;
-        let bytes = parts::encode(encode::scatter(self), path)?;
-        Ok(AtomicFile::write_all_to(path, &bytes)?)
+        parts::write(encode::scatter(self), path)
     }
 }
 

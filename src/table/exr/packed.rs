@@ -10,7 +10,7 @@ use crate::table::check::{MAX_BINS, MAX_LEVELS, MAX_RES, MAX_SAMPLES};
 use crate::table::pack::{Code, Kind, Layout, PackedTable, Trees};
 use crate::table::{Ledger, TableError};
 use exr::meta::header::Header;
-use exr::prelude::{FlatSamples, Vec2, f16};
+use exr::prelude::{Compression, FlatSamples, Vec2, f16};
 use std::path::Path;
 
 /// Version of the packed format.
@@ -123,7 +123,7 @@ pub(in crate::table) fn encode_packed(
         line("trees", words.collect(), FlatSamples::U32),
         line("values", values.collect(), FlatSamples::F16),
     ];
-    raw::encode(parts, path)
+    raw::encode(parts, Compression::ZIP16, path)
 }
 
 fn plain(name: &str, width: usize, height: usize, samples: FlatSamples) -> RawPart {

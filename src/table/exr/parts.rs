@@ -1,25 +1,73 @@
 //! Unicubes of 32-bit floats as parts of a file.
 
 use super::attributes::Attributes;
+use super::headed::Headed;
 use super::packed;
 use super::raw::{self, RawPart};
+use crate::io::{AtomicFile, FileError};
 use crate::table::TableError;
 use crate::table::check::{MAX_BINS, MAX_LEVELS, MAX_RES, MAX_SAMPLES};
 use exr::meta::header::Header;
-use exr::prelude::{FlatSamples, SampleType, Vec2};
+use exr::prelude::{Compression, FlatSamples, SampleType, Vec2};
+use rayon::prelude::*;
+use std::borrow::Cow;
 use std::path::Path;
 
 /// One part of a table file: a unicube a channel.
 #[derive(Clone, Debug)]
-pub(super) struct Part {
+pub(super) struct Part<'a> {
     pub(super) name: String,
     pub(super) res: usize,
-    pub(super) channels: Vec<(String, Vec<f32>)>,
+    pub(super) channels: Vec<(String, Cow<'a, [f32]>)>,
     pub(super) attributes: Attributes,
 }
 
-/// The bytes of a file that holds `parts`.
-pub(super) fn encode(parts: Vec<Part>, path: &Path) -> Result<Vec<u8>, TableError> {
+/// Writes a file that holds `parts`.
+///
+/// ZIP where it gains something. Maps of smooth densities are 32 bits of mantissa noise each: it would
+/// take 2 % off their size and most of the time that a first table takes. Maps with holes shrink.
+pub(super) fn write(parts: Vec<Part<'_>>, path: &Path) -> Result<(), TableError> {
+    if !is_smooth(&parts) {
+        let bytes = raw::encode(owned(parts), Compression::ZIP16, path)?;
+        return Ok(AtomicFile::write_all_to(path, &bytes)?);
+    }
+    let mut file = Headed::new(AtomicFile::create(path)?, parts.len());
+    raw::write_plain(&parts, &mut file).map_err(|error| match error {
+        exr::error::Error::Io(error) => FileError::new("write", path, error).into(),
+        other => TableError::Encode {
+            path: path.to_owned(),
+            reason: other.to_string(),
+        },
+    })?;
+    let file = file.finish();
+    Ok(file
+        .map_err(|e| FileError::new("write", path, e))?
+        .commit()?)
+}
+
+/// The bytes of such a file.
+#[cfg(test)]
+pub(super) fn encode(
+    parts: Vec<Part<'_>>,
+    compression: Compression,
+    path: &Path,
+) -> Result<Vec<u8>, TableError> {
+    raw::encode(owned(parts), compression, path)
+}
+
+fn is_smooth(parts: &[Part<'_>]) -> bool {
+    let counts = parts.par_iter().map(|part| {
+        let counts = part.channels.iter().map(|(_, samples)| {
+            let zeros = samples.iter().filter(|v| **v == 0.0).count();
+            [zeros, samples.len()]
+        });
+        counts.fold([0; 2], |[a, b], [c, d]| [a + c, b + d])
+    });
+    let [zeros, all] = counts.reduce(|| [0; 2], |[a, b], [c, d]| [a + c, b + d]);
+    4 * zeros < all
+}
+
+fn owned(parts: Vec<Part<'_>>) -> Vec<RawPart> {
     let raw = parts.into_iter().map(|part| RawPart {
         name: part.name,
         width: part.res,
@@ -27,11 +75,11 @@ pub(super) fn encode(parts: Vec<Part>, path: &Path) -> Result<Vec<u8>, TableErro
         channels: part
             .channels
             .into_iter()
-            .map(|(name, samples)| (name, FlatSamples::F32(samples)))
+            .map(|(name, samples)| (name, FlatSamples::F32(samples.into_owned())))
             .collect(),
         attributes: part.attributes,
     });
-    raw::encode(raw.collect(), path)
+    raw.collect()
 }
 
 /// The parts of a file of any kind, after a check of all headers against the limits.
@@ -47,12 +95,12 @@ pub(super) fn decode_raw(bytes: &[u8], path: &Path) -> Result<Vec<RawPart>, Tabl
 
 /// The parts of a file that is not packed.
 #[cfg(test)]
-pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Vec<Part>, TableError> {
+pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Vec<Part<'static>>, TableError> {
     let raw = decode_raw(bytes, path)?;
     from_raw(raw).map_err(|e| e.of_file(path))
 }
 
-pub(super) fn from_raw(raw: Vec<RawPart>) -> Result<Vec<Part>, TableError> {
+pub(super) fn from_raw(raw: Vec<RawPart>) -> Result<Vec<Part<'static>>, TableError> {
     raw.into_iter().map(part).collect()
 }
 
@@ -95,12 +143,12 @@ fn check_headers(headers: &[Header]) -> Result<(), TableError> {
     Ok(())
 }
 
-fn part(raw: RawPart) -> Result<Part, TableError> {
+fn part(raw: RawPart) -> Result<Part<'static>, TableError> {
     let channels = raw
         .channels
         .into_iter()
         .map(|(name, samples)| match samples {
-            FlatSamples::F32(samples) => Ok((name, samples)),
+            FlatSamples::F32(samples) => Ok((name, Cow::Owned(samples))),
             _ => Err(TableError::Inconsistent(format!(
                 "channel {name} is not 32-bit float"
             ))),

@@ -110,7 +110,8 @@ fn scatter_round_trips_to_the_last_bit() {
 #[test]
 fn the_same_table_gives_the_same_bytes() {
     let path = Path::new("x.exr");
-    let bytes = || parts::encode(encode::structure(&sample(Mode::Paper, 4, 16)), path).unwrap();
+    let bytes =
+        || parts::encode(encode::structure(&sample(Mode::Paper, 4, 16)), ZIP, path).unwrap();
     let first = bytes();
     for _ in 0..4 {
         assert!(bytes() == first);
@@ -152,11 +153,12 @@ fn tables_that_contradict_themselves_are_refused() {
 #[test]
 fn files_that_contradict_themselves_are_refused() {
     let path = Path::new("some/table.exr");
-    let parts = encode::structure(&sample(Mode::Cone, 4, 2));
+    let table = sample(Mode::Cone, 4, 2);
+    let parts = encode::structure(&table);
     let refused = |change: &dyn Fn(&mut Vec<parts::Part>), words: &str| {
         let mut parts = parts.clone();
         change(&mut parts);
-        let bytes = parts::encode(parts, path).unwrap();
+        let bytes = parts::encode(parts, ZIP, path).unwrap();
         let error = parts::decode(&bytes, path)
             .and_then(decode::table)
             .map_err(|e| e.of_file(path))
@@ -205,7 +207,7 @@ fn files_that_contradict_themselves_are_refused() {
 fn damaged_files_never_panic() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("damaged.exr");
-    let good = parts::encode(encode::structure(&sample(Mode::Cone, 2, 2)), &path).unwrap();
+    let good = parts::encode(encode::structure(&sample(Mode::Cone, 2, 2)), ZIP, &path).unwrap();
     let try_read = |bytes: &[u8]| {
         let parts = parts::decode(bytes, &path)?;
         decode::table(parts).map_err(|e| e.of_file(&path))
@@ -248,7 +250,8 @@ fn azimuths_round_trip_to_the_last_bit() {
         maps.write(&path).unwrap();
         assert_eq!(ScatterMaps::read(&path).unwrap(), maps);
     }
-    let parts = encode::structure(&sides(Symmetry::BothAxes));
+    let table = sides(Symmetry::BothAxes);
+    let parts = encode::structure(&table);
     let number = |part: usize, name| parts[part].attributes.get_double(name).unwrap();
     assert_eq!(parts[4].name, "azimuth01-bin01");
     assert_eq!(number(4, "azimuth_deg"), 67.5);
@@ -257,7 +260,8 @@ fn azimuths_round_trip_to_the_last_bit() {
 
 #[test]
 fn azimuths_that_contradict_themselves_are_refused() {
-    let parts = encode::structure(&sides(Symmetry::BothAxes));
+    let table = sides(Symmetry::BothAxes);
+    let parts = encode::structure(&table);
     let refused = |change: &dyn Fn(&mut Vec<parts::Part>), words: &str| {
         let mut parts = parts.clone();
         change(&mut parts);
@@ -277,4 +281,20 @@ fn azimuths_that_contradict_themselves_are_refused() {
     );
     refused(&|p| p[4].attributes.double("theta_deg", 1.0), "theta_deg");
     refused(&|p| p[0].attributes.text("mode", "paper"), "azimuth");
+}
+
+const ZIP: exr::prelude::Compression = exr::prelude::Compression::ZIP16;
+
+/// Lines that are copied to the file as they lie make the file that the encoder makes.
+#[test]
+fn smooth_maps_are_written_as_the_encoder_would() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("smooth.exr");
+    for (bins, res) in [(2, 1), (16, 16), (3, 64)] {
+        let table = sample(Mode::Cone, bins, res);
+        let plain = exr::prelude::Compression::Uncompressed;
+        let expected = parts::encode(encode::structure(&table), plain, &path).unwrap();
+        table.write(&path).unwrap();
+        assert!(std::fs::read(&path).unwrap() == expected, "{bins} {res}");
+    }
 }
