@@ -130,7 +130,8 @@ impl Bake<'_> {
     /// What [`Bake::snapshot`] will take, foretold from what making the filter took on the same threads: neither depends
     /// on photons, so the two keep their ratio on any machine and under any steady load.
     pub fn tabling(&self) -> Duration {
-        self.making.mul_f64(TABLING * self.header.plan.units() as f64)
+        self.making
+            .mul_f64(TABLING * self.header.plan.units() as f64)
     }
 
     /// Likewise what [`Bake::error`] will take after that.
