@@ -1,16 +1,21 @@
 //! From a species to what a scene needs: the one library module that knows bake and renderer.
 
+mod colors;
 mod looks;
 
+pub use colors::match_colors;
 pub use looks::looks;
 
 use crate::bake::{BakeError, Baked, Cache, Settings, find_or_bake};
 use crate::blame::Blame;
 use crate::bsdf::{Chiang, ChiangParameters, CoatPart, HairMaterial, TableSet, Zone};
 use crate::color::Rgb;
+use crate::groom::GroomError;
 use crate::progress::{Cancel, Progress};
+use crate::render::RenderError;
+use crate::scene::SceneError;
 use crate::species::{HairClass, PigmentBand, Section, Species, Station};
-use crate::table::{Model, Provenance, ScatterTable, TableError, TableFile, Undyed};
+use crate::table::{Model, Provenance, ScatterMaps, ScatterTable, TableError, TableFile, Undyed};
 
 /// Materials that cannot be made.
 #[derive(Debug, thiserror::Error)]
@@ -21,6 +26,15 @@ pub enum AssemblyError {
     /// The table cannot be dyed.
     #[error(transparent)]
     Dye(#[from] TableError),
+    /// A coat whose color was asked for does not grow.
+    #[error("matching colors: {0}")]
+    Groom(#[from] GroomError),
+    /// It cannot be rendered.
+    #[error("matching colors: {0}")]
+    Scene(#[from] SceneError),
+    /// Its picture cannot be made.
+    #[error("matching colors: {0}")]
+    Render(#[from] RenderError),
 }
 
 impl AssemblyError {
@@ -29,6 +43,9 @@ impl AssemblyError {
         match self {
             Self::Bake(error) => error.blame(),
             Self::Dye(error) => error.blame(),
+            Self::Groom(error) => error.blame(),
+            Self::Scene(error) => error.blame(),
+            Self::Render(error) => error.blame(),
         }
     }
 }
@@ -86,6 +103,7 @@ const LEAST_ASPECT: f64 = 1.2;
 
 /// The materials of all hair classes: every station baked once, dyed for every pigment zone. Of several
 /// azimuths, the photons of the settings are those of each; round and twisted fibers average over them.
+/// Dyes are as strong as the species says: see [`match_colors`].
 ///
 /// # Errors
 /// A fiber that cannot be built or dyed, or [`BakeError::Stopped`]: a picture needs all its tables.
@@ -96,69 +114,106 @@ pub fn materials(
     progress: &dyn Progress,
     cancel: &Cancel,
 ) -> Result<Vec<HairMaterial>, AssemblyError> {
-    materials_with(species, &[], settings, cache, progress, cancel)
+    let tables = StationTables::new(species, &[], settings, cache, progress, cancel)?;
+    Ok(tables.materials(species)?)
 }
 
-/// [`materials`] from tables that are there already, as far as they reach: a station takes the table of
-/// its class that was baked nearest to it, and only classes without any are baked. Dyed tables keep the
-/// pigment that they have.
-///
-/// # Errors
-/// As for [`materials`], and a table of a class that the species does not have.
-pub fn materials_with(
-    species: &Species,
-    given: &[TableFile],
-    settings: &Settings,
-    cache: Option<&Cache>,
-    progress: &dyn Progress,
-    cancel: &Cancel,
-) -> Result<Vec<HairMaterial>, AssemblyError> {
-    for table in given {
-        let class = &table.provenance().class;
-        if !species.classes.iter().any(|c| c.name == *class) {
-            let classes: Vec<&str> = species.classes.iter().map(|c| c.name.as_str()).collect();
-            return Err(TableError::Request(format!(
-                "a table of the hair class {class:?} was given; {} has {}",
-                species.id,
-                classes.join(", ")
-            ))
-            .into());
+/// The table of every station of a species, to be dyed.
+pub struct StationTables<'a> {
+    /// Of each hair class.
+    classes: Vec<Vec<Source<'a>>>,
+}
+
+/// Where a table is from.
+enum Source<'a> {
+    Given(&'a TableFile),
+    Baked(Undyed),
+}
+
+impl Source<'_> {
+    /// Dyed tables keep the pigment that they have.
+    fn dye(&self, absorption_per_um: [f64; 3]) -> Result<ScatterMaps, TableError> {
+        match self {
+            Self::Given(TableFile::Scatter(maps)) => Ok(maps.clone()),
+            Self::Given(TableFile::Structure(table)) => table.dye(absorption_per_um),
+            Self::Baked(table) => table.dye(absorption_per_um),
         }
     }
-    let mut materials = Vec::with_capacity(species.classes.len());
-    for (index, class) in species.classes.iter().enumerate() {
-        let (parts, dyes) = coat_parts(&species.pigments(index));
-        let mut tables: Vec<Vec<ScatterTable>> = vec![Vec::new(); dyes.len()];
-        for station in &class.stations {
-            if let Some(table) = nearest(given, class, station) {
-                for (dyed, band) in tables.iter_mut().zip(&dyes) {
-                    dyed.push(ScatterTable::from(match table {
-                        TableFile::Scatter(maps) => maps.clone(),
-                        TableFile::Structure(table) => table.dye(band.absorption_per_um())?,
-                    }));
+}
+
+impl<'a> StationTables<'a> {
+    /// Finds or bakes them.
+    ///
+    /// * `given`: tables that are there already, as far as they reach: a station takes the table of its class
+    ///   that was baked nearest to it, and only classes without any are baked.
+    ///
+    /// # Errors
+    /// As for [`materials`], and a table of a class that the species does not have.
+    pub fn new(
+        species: &Species,
+        given: &'a [TableFile],
+        settings: &Settings,
+        cache: Option<&Cache>,
+        progress: &dyn Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, AssemblyError> {
+        for table in given {
+            let class = &table.provenance().class;
+            if !species.classes.iter().any(|c| c.name == *class) {
+                let classes: Vec<&str> = species.classes.iter().map(|c| c.name.as_str()).collect();
+                return Err(TableError::Request(format!(
+                    "a table of the hair class {class:?} was given; {} has {}",
+                    species.id,
+                    classes.join(", ")
+                ))
+                .into());
+            }
+        }
+        let mut classes = Vec::with_capacity(species.classes.len());
+        for class in &species.classes {
+            let mut sources = Vec::with_capacity(class.stations.len());
+            for station in &class.stations {
+                if let Some(table) = nearest(given, class, station) {
+                    sources.push(Source::Given(table));
+                    continue;
                 }
-                continue;
+                let settings = settings_of(station, settings);
+                let baked =
+                    station_table(species, class, station, &settings, cache, progress, cancel)?;
+                if !baked.complete {
+                    return Err(BakeError::Stopped.into());
+                }
+                sources.push(Source::Baked(baked.table));
             }
-            let settings = settings_of(station, settings);
-            let baked = station_table(species, class, station, &settings, cache, progress, cancel)?;
-            if !baked.complete {
-                return Err(BakeError::Stopped.into());
-            }
-            for (dyed, band) in tables.iter_mut().zip(&dyes) {
-                let maps = baked.table.dye(band.absorption_per_um())?;
-                dyed.push(ScatterTable::from(maps));
-            }
+            classes.push(sources);
         }
-        let stations = class
-            .stations
-            .iter()
-            .map(|station| station.at as f32)
-            .collect();
-        let tables = tables.into_iter().flatten().collect();
-        // A validated class has a station and a band, and as many tables as stations times dyes.
-        materials.extend(TableSet::with_parts(stations, parts, tables).map(HairMaterial::Tables));
+        Ok(Self { classes })
     }
-    Ok(materials)
+
+    /// The materials of all hair classes, dyed for every pigment zone.
+    ///
+    /// * `species`: the one that the tables are of; its pigment may be another.
+    ///
+    /// # Errors
+    /// Tables that cannot be dyed.
+    pub fn materials(&self, species: &Species) -> Result<Vec<HairMaterial>, TableError> {
+        let mut materials = Vec::with_capacity(species.classes.len());
+        for (index, (class, sources)) in species.classes.iter().zip(&self.classes).enumerate() {
+            let (parts, dyes) = coat_parts(&species.pigments(index));
+            let mut tables: Vec<ScatterTable> = Vec::with_capacity(dyes.len() * sources.len());
+            for band in &dyes {
+                for source in sources {
+                    tables.push(source.dye(band.absorption_per_um())?.into());
+                }
+            }
+            let stations = class.stations.iter();
+            let stations = stations.map(|station| station.at as f32).collect();
+            // A validated class has a station and a band, and as many tables as stations times dyes.
+            let set = TableSet::with_parts(stations, parts, tables);
+            materials.extend(set.map(HairMaterial::Tables));
+        }
+        Ok(materials)
+    }
 }
 
 /// The hair model of Chiang et al. 2016 in place of each table, as near to it as it comes.
@@ -191,8 +246,7 @@ pub fn fitted(materials: &[HairMaterial]) -> Result<Vec<HairMaterial>, TableErro
 fn coat_parts(pigments: &[&[PigmentBand]]) -> (Vec<CoatPart>, Vec<PigmentBand>) {
     let mut dyes: Vec<PigmentBand> = Vec::new();
     let mut dye_of = |band: &PigmentBand| {
-        let same =
-            |d: &PigmentBand| (d.eumelanin, d.pheomelanin) == (band.eumelanin, band.pheomelanin);
+        let same = |d: &PigmentBand| d.absorption_per_um() == band.absorption_per_um();
         dyes.iter().position(same).unwrap_or_else(|| {
             dyes.push(*band);
             dyes.len() - 1

@@ -7,15 +7,17 @@ mod settings;
 mod usdz;
 mod volume;
 
+use super::color;
 use super::skin::SkinArgs;
 use super::{Console, Failure, bake::parse_count};
-use crate::assembly;
+use crate::assembly::{self, StationTables};
 use crate::bake::{Cache, Settings};
 use crate::blame::Blame;
 use crate::export::asset::{self, ClassLook, Parts, Wear};
 use crate::export::{ExportError, Format};
 use crate::groom::{self, Groom, GroomSettings};
 use crate::io::check_writable;
+use crate::skin::Skin;
 use crate::species::Species;
 use announce::{announce, described};
 use coats::Dressed;
@@ -63,6 +65,8 @@ pub(super) struct Args {
         conflicts_with = "coat"
     )]
     coats: Vec<String>,
+    #[arg(long, value_name = "COLOR", value_parser = color::parse, conflicts_with_all = ["coat", "coats"], help = color::HELP)]
+    color: Option<[f64; 3]>,
     #[command(flatten)]
     on: SkinArgs,
     /// Strands in all; if not given, as many as the animal has, at most 250000. Fewer are wider, to cover
@@ -144,7 +148,7 @@ impl From<ExportError> for Failure {
 
 fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     // All that can be refused is refused before any work.
-    let dressed = coats::dressed(args)?;
+    let mut dressed = coats::dressed(args)?;
     let settings = settings(args)?;
     let grids = volume::settings(&args.volume, &args.output, settings.frame)?;
     for output in &args.output {
@@ -170,12 +174,16 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     // Only assets have materials, and a choice of coats.
     let is_asset = writes_usd(args)?;
     let mut grooms = Vec::new();
-    for Dressed { name, species } in dressed.iter().take(if is_asset { usize::MAX } else { 1 }) {
+    let shown = dressed[0].name.clone();
+    for Dressed { name, species } in dressed
+        .iter_mut()
+        .take(if is_asset { usize::MAX } else { 1 })
+    {
         if args.coats.len() > 1 {
             console.say(format!("coat {name}"));
         }
         let looks = match is_asset {
-            true => looks(args, species, console)?,
+            true => looks(args, species, &skin, &grown, console)?,
             false => Vec::new(),
         };
         let groom = groom::grow(&skin, species, &grown, console, cancel)?;
@@ -184,9 +192,8 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         }
         let first = grooms.first().map(|(groom, ..): &(Groom, _, _)| groom);
         if first.is_some_and(|first| first.id != groom.id) {
-            let first = &dressed[0].name;
             let message = format!(
-                "coat {name} has other strands than {first}: trim_mm cuts what coats shorten"
+                "coat {name} has other strands than {shown}: trim_mm cuts what coats shorten"
             );
             let help = "write each coat to a file of its own with --coat, or leave out trim_mm";
             return Err(Failure::with_help(Blame::Input, message, help));
@@ -231,7 +238,13 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
 }
 
 /// Materials for other renderers, and what they lose.
-fn looks(args: &Args, species: &Species, console: &Console) -> Result<Vec<ClassLook>, Failure> {
+fn looks(
+    args: &Args,
+    species: &mut Species,
+    skin: &Skin,
+    grown: &GroomSettings,
+    console: &Console,
+) -> Result<Vec<ClassLook>, Failure> {
     if args.no_material {
         return Ok(Vec::new());
     }
@@ -242,7 +255,14 @@ fn looks(args: &Args, species: &Species, console: &Console) -> Result<Vec<ClassL
         ..Settings::cone()
     };
     let cancel = console.cancel();
-    let looks = assembly::looks(species, &bake, cache.as_ref(), console, cancel)?;
+    let cache = cache.as_ref();
+    if species.is_dyed() {
+        let tables = StationTables::new(species, &[], &bake, cache, console, cancel)?;
+        for missed in assembly::match_colors(species, &tables, skin, grown, console, cancel)? {
+            console.say(format!("warning: {missed}"));
+        }
+    }
+    let looks = assembly::looks(species, &bake, cache, console, cancel)?;
     for (class, look) in species.classes.iter().zip(&looks) {
         let errors: Vec<String> = (look.parts.iter().flatten())
             .map(|zone| format!("{:.0} %", 100.0 * zone.mean_error()))

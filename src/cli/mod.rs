@@ -7,6 +7,7 @@
 mod bake;
 mod cache;
 mod check;
+mod color;
 mod console;
 mod convert;
 mod export;

@@ -44,6 +44,7 @@ fn class(name: &str, groom: ClassGroom) -> HairClass {
             softness_mm: 0.0,
             eumelanin: 0.1,
             pheomelanin: 0.5,
+            dye: None,
         }],
         groom,
     }

@@ -7,6 +7,7 @@
 pub(crate) mod build;
 pub(crate) mod check;
 mod coat;
+mod dye;
 pub(crate) mod error;
 pub(crate) mod fields;
 mod library;
@@ -29,6 +30,8 @@ pub use coat::{
     COAT_LIBRARY, CoatLayer, CoatLimit, CoatPattern, CoatRecipe, CoatZone, Extent, Join, Lay,
     MAX_ZONES, Side, Turing, coat_names,
 };
+pub use dye::Dye;
+pub(crate) use dye::coat_color;
 pub use error::{Place, Problem, SpeciesError, SpeciesErrors};
 pub use library::{LIBRARY, ids};
 pub use materials::{Boundary, Filling, Material, Materials, Rgb};
@@ -100,6 +103,7 @@ impl Species {
         let (recipe, text) = coat::coat_of(coat, Path::new(""))?;
         self.text.push_str(&build::as_comment(coat, &text));
         self.coat = Some(recipe);
+        self.estimate_dyes();
         Ok(())
     }
 }

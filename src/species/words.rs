@@ -59,6 +59,9 @@ impl HairClass {
     /// Light goes some five radii through a hair whether it has a medulla or not, being caught between
     /// its scales (bakes of all built-in animals): what counts is the pigment times the thickness.
     pub fn color_word(&self, band: &PigmentBand) -> &'static str {
+        if band.dye.is_some() {
+            return "dyed";
+        }
         let (dark, yellow) = (band.eumelanin, band.pheomelanin);
         let is_lattice =
             |s: &Station| matches!(s.structure.medulla.kind, MedullaKind::Lattice { .. });
@@ -153,6 +156,7 @@ mod tests {
                 softness_mm: 0.0,
                 eumelanin,
                 pheomelanin,
+                dye: None,
             })
         };
         // Concentrations of hair shaders: blond 0.3, brown 1.3, black 8; red with little eumelanin.

@@ -19,7 +19,10 @@ pub(super) struct Dressed {
 /// # Errors
 /// An animal or a coat that is not there or wrong; two of one name.
 pub(super) fn dressed(args: &Args) -> Result<Vec<Dressed>, Failure> {
-    let species = species::load(&args.name, &args.set)?;
+    let mut species = species::load(&args.name, &args.set)?;
+    if let Some(color) = args.color {
+        species.dye(color);
+    }
     let coats: Vec<Option<&String>> = match args.coats.as_slice() {
         [] => vec![args.coat.as_ref()],
         coats => coats.iter().map(Some).collect(),

@@ -3,6 +3,7 @@
 use super::{output, parse};
 use crate::bsdf::ChiangParameters;
 use crate::cli::bake::{parse_count, parse_share, parse_time};
+use crate::cli::color;
 use crate::cli::skin::SkinArgs;
 use crate::render::Crop;
 use crate::scene::Lamp;
@@ -18,6 +19,7 @@ use std::time::Duration;
   vair render red-fox --table guard-small.exr --table under-small.exr -o fox.png
   vair render red-fox --model chiang-fit -o shader.png
   vair render cat --coat leopard -o leopard.png
+  vair render alpaca --color '#c8642a' -o rusty.png
   vair render mink --skin sofa.obj --strands 1e6 -o sofa.png
   vair render examples/scenes/fox-by-a-window.toml --res 1280x720 -o window.png
   vair render red-fox --crop 200,150,64,64 --spp 256 -o eye.exr")]
@@ -28,6 +30,8 @@ pub(in crate::cli) struct Args {
     /// tortoiseshell, the path of a recipe, or none; if not given, that of the species.
     #[arg(long, value_name = "NAME")]
     pub(super) coat: Option<String>,
+    #[arg(long, value_name = "COLOR", value_parser = color::parse, conflicts_with = "coat", help = color::HELP)]
+    pub(super) color: Option<[f64; 3]>,
     #[command(flatten)]
     pub(super) on: SkinArgs,
     /// The light: studio, sky, white, black, or a latitude-longitude EXR or HDR file; studio if not given.

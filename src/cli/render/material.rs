@@ -1,11 +1,13 @@
 //! What scatters light: tables or a model in closed form.
 
 use super::args::{Args, ModelArg};
-use crate::assembly;
+use crate::assembly::{self, StationTables};
 use crate::bake::{Cache, Settings};
 use crate::blame::Blame;
 use crate::bsdf::{AlongStrand, Chiang, HairMaterial};
 use crate::cli::{Console, Failure};
+use crate::groom::GroomSettings;
+use crate::skin::Skin;
 use crate::species::Species;
 use crate::table::TableFile;
 use std::path::Path;
@@ -28,11 +30,13 @@ pub(super) fn given_table(path: &Path) -> Result<TableFile, Failure> {
     Ok(table)
 }
 
-/// The materials of all hair classes.
+/// The materials of all hair classes. Dyes get the strength that their colors need.
 pub(super) fn materials(
     args: &Args,
-    species: &Species,
+    species: &mut Species,
     given: &[TableFile],
+    skin: &Skin,
+    grown: &GroomSettings,
     console: &Console,
 ) -> Result<Vec<HairMaterial>, Failure> {
     if args.model == ModelArg::Chiang {
@@ -51,12 +55,16 @@ pub(super) fn materials(
         ..Settings::cone()
     };
     let cancel = console.cancel();
-    let tables = assembly::materials_with(species, given, &bake, cache.as_ref(), console, cancel)?;
+    let tables = StationTables::new(species, given, &bake, cache.as_ref(), console, cancel)?;
+    for missed in assembly::match_colors(species, &tables, skin, grown, console, cancel)? {
+        console.say(format!("warning: {missed}"));
+    }
+    let materials = tables.materials(species)?;
     match args.model {
         ModelArg::ChiangFit => {
             console.say("fitting chiang");
-            Ok(assembly::fitted(&tables)?)
+            Ok(assembly::fitted(&materials)?)
         }
-        _ => Ok(tables),
+        _ => Ok(materials),
     }
 }

@@ -38,6 +38,9 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     if let Some(coat) = &args.coat {
         species.wear(coat)?;
     }
+    if let Some(color) = args.color {
+        species.dye(color);
+    }
     let job = job(args)?;
     job.check()?;
     if args.mitsuba.is_some() && args.model != ModelArg::Chiang {
@@ -45,6 +48,13 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
             Blame::Input,
             "--mitsuba writes the numbers of a hair model, and the picture is of baked tables",
             "add --model chiang, with --chiang for other numbers than the usual",
+        ));
+    }
+    if args.color.is_some() && args.model == ModelArg::Chiang {
+        return Err(Failure::with_help(
+            Blame::Input,
+            "--color dyes baked tables, and the picture is of a hair model with numbers of its own",
+            "leave out --model chiang, or give its absorption: --chiang sigma_a=R:G:B",
         ));
     }
     for output in &args.output {
@@ -74,12 +84,12 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     let cancel = console.cancel();
     let lamps = lamps(args, &view);
     let mut stages = stats::Stages::begin();
-    let materials = material::materials(args, &species, &given, console)?;
-    stages.end("materials");
     let settings = GroomSettings {
         strands: args.strands.map(|n| n as usize),
         seed: args.seed(),
     };
+    let materials = material::materials(args, &mut species, &given, &skin, &settings, console)?;
+    stages.end("materials");
     let groom = groom::grow(&skin, &species, &settings, console, cancel)?;
     stages.end("groom");
     for warning in &groom.warnings {

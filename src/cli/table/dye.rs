@@ -69,6 +69,7 @@ impl Pigment {
                 softness_mm: 0.0,
                 eumelanin: self.eumelanin.unwrap_or(0.0),
                 pheomelanin: self.pheomelanin.unwrap_or(0.0),
+                dye: None,
             };
             return Ok(Some(band.absorption_per_um()));
         }

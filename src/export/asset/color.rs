@@ -3,18 +3,8 @@
 use super::look::{ClassLook, HairLook};
 use crate::bsdf::{Zone, bracket_zone};
 use crate::groom::Groom;
-use crate::math::fresnel;
-use crate::species::{HairClass, PigmentBand, Species};
+use crate::species::{HairClass, PigmentBand, Species, coat_color};
 use glam::Vec3;
-
-/// Index of refraction of hair.
-const ETA: f64 = 1.55;
-
-/// Mean cosine of the light that one hair scatters on: most goes through.
-const MEAN_COSINE: f64 = 0.5;
-
-/// Offsets across the hair at which light enters.
-const OFFSETS: usize = 16;
 
 /// Pigment of one class in one part of a coat, from the tip to the root.
 #[derive(Clone, Debug)]
@@ -54,7 +44,10 @@ impl Zones {
                 .map(|(zone, band)| {
                     let depth = band.absorption_per_um().map(|a| a * radius_um);
                     Dye {
-                        color: Vec3::from_array(depth.map(|d| coat(hair(d)) as f32)),
+                        color: Vec3::from_array(match &band.dye {
+                            Some(dye) => dye.color.map(|c| c as f32),
+                            None => depth.map(|d| coat_color(d) as f32),
+                        }),
                         melanin: Vec3::new(band.eumelanin as f32, band.pheomelanin as f32, 0.0),
                         absorption: Vec3::from_array(
                             look.and_then(|look| look.get(zone))
@@ -146,46 +139,5 @@ impl Coats {
     ) {
         let part = groom.coat.get(strand).map_or(0, |&part| usize::from(part));
         self.0[part.min(self.0.len() - 1)].along(groom, strand, of, out);
-    }
-}
-
-/// Share of light that a clear-walled hair of some absorption per radius scatters, lit from the side.
-fn hair(depth: f64) -> f64 {
-    let mean: f64 = (0..OFFSETS)
-        .map(|i| {
-            let h = (i as f64 + 0.5) / OFFSETS as f64;
-            let (f, _) = fresnel::dielectric((1.0 - h * h).sqrt(), ETA);
-            let cos_inside = (1.0 - (h / ETA).powi(2)).sqrt();
-            let t = (-2.0 * depth * cos_inside).exp();
-            f + (1.0 - f).powi(2) * t / (1.0 - f * t)
-        })
-        .sum();
-    mean / OFFSETS as f64
-}
-
-/// Reflectance of a deep coat of hairs that scatter a share of the light: van de Hulst's formula for a
-/// half space (1980).
-fn coat(albedo: f64) -> f64 {
-    let s = ((1.0 - albedo) / (1.0 - albedo * MEAN_COSINE))
-        .max(0.0)
-        .sqrt();
-    (1.0 - s) * (1.0 - 0.139 * s) / (1.0 + 1.17 * s)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn clear_hair_is_white_and_dark_hair_dark() {
-        assert!((hair(0.0) - 1.0).abs() < 1e-12);
-        assert!((coat(1.0) - 1.0).abs() < 1e-12);
-        let mut last = 1.0;
-        for depth in [0.01, 0.1, 0.5, 2.0, 10.0] {
-            let color = coat(hair(depth));
-            assert!(color < last && color > 0.0, "{depth}: {color}");
-            last = color;
-        }
-        assert!(last < 0.02);
     }
 }

@@ -61,7 +61,7 @@ pub(crate) fn build(
     if !complete || classes.is_empty() {
         return None;
     }
-    Some(Species {
+    let mut species = Species {
         id: id.to_owned(),
         name: text_of(root, "name")?,
         latin: text_of(root, "latin").unwrap_or_default(),
@@ -74,7 +74,9 @@ pub(crate) fn build(
         coat: coat?,
         skin_color: skin?.try_into().ok()?,
         text: text + &as_comments(&reader.recipes),
-    })
+    };
+    species.estimate_dyes();
+    Some(species)
 }
 
 /// Recipes as comments, to stand at the end of the file's text.

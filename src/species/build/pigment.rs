@@ -1,7 +1,8 @@
 //! Pigment bands from the tip to the root.
 
-use super::{Reader, number, place_of, tables};
+use super::{Reader, number, numbers, place_of, tables};
 use crate::species::check::Checked;
+use crate::species::dye::Dye;
 use crate::species::model::PigmentBand;
 
 impl Reader<'_> {
@@ -17,8 +18,7 @@ impl Reader<'_> {
         let mut built = Vec::new();
         let mut from_mm = 0.0;
         for (index, band) in bands.iter().enumerate() {
-            let eumelanin = number(band, "eumelanin");
-            let pheomelanin = number(band, "pheomelanin");
+            let content = self.content(band);
             let edge = if index == last {
                 self.open_end(band);
                 Some((f64::INFINITY, 0.0))
@@ -28,18 +28,44 @@ impl Reader<'_> {
             if let Some((to_mm, _)) = edge {
                 from_mm = to_mm;
             }
-            if let (Some((to_mm, softness_mm)), Some(eumelanin), Some(pheomelanin)) =
-                (edge, eumelanin, pheomelanin)
-            {
+            if let (Some((to_mm, softness_mm)), Some(content)) = (edge, content) {
                 built.push(PigmentBand {
                     to_mm,
                     softness_mm,
-                    eumelanin,
-                    pheomelanin,
+                    ..content
                 });
             }
         }
         (built.len() == bands.len()).then_some(built)
+    }
+
+    /// What colors a band: melanin of both kinds, or a dye.
+    fn content(&mut self, band: &Checked) -> Option<PigmentBand> {
+        let melanin = ["eumelanin", "pheomelanin"];
+        if band.get("color").is_none() {
+            for key in melanin {
+                if band.get(key).is_none() && !band.is_misspelt(key) {
+                    let message = format!("`{}` is missing", band.path_of(key));
+                    let hint = "a band has eumelanin and pheomelanin, 0 for none; or a color";
+                    self.conflict(&band.place, message, hint);
+                }
+            }
+            let [eumelanin, pheomelanin] = melanin.map(|key| number(band, key));
+            return Some(PigmentBand {
+                eumelanin: eumelanin?,
+                pheomelanin: pheomelanin?,
+                ..PigmentBand::dyed(None)
+            });
+        }
+        for key in melanin {
+            if let Some(item) = band.get(key) {
+                let message = format!("`{}` stands beside a color", band.path_of(key));
+                let hint = "the color says how much is absorbed: take out one or the other";
+                self.conflict(&item.place, message, hint);
+            }
+        }
+        let color = numbers(band, "color")?.try_into().ok()?;
+        Some(PigmentBand::dyed(Some(Dye::new(color))))
     }
 
     /// End and softness of a band that starts `from_mm` from the tip.

@@ -126,15 +126,20 @@ pub(crate) static BAND: Shape = Shape {
             Kind::Number(number(0.0, 100.0, "mm")),
             "Width of the transition to the next zone; left out in the last zone.",
         ),
-        Field::required(
+        Field::layered(
             "eumelanin",
             Kind::Number(number(0.0, 50.0, "")),
             "Eumelanin (black, brown) concentration for a fiber of 40 um radius.",
         ),
-        Field::required(
+        Field::layered(
             "pheomelanin",
             Kind::Number(number(0.0, 50.0, "")),
             "Pheomelanin (yellow, orange) concentration for a fiber of 40 um radius.",
+        ),
+        Field::layered(
+            "color",
+            Kind::Numbers(3, number(0.0, 1.0, "")),
+            "In place of melanin: what a coat all of such hair shows on the average in a white room, linear Rec.709.",
         ),
     ],
 };

@@ -12,6 +12,7 @@ pub use structure::*;
 pub use vary::*;
 
 use super::coat::CoatRecipe;
+use super::dye::Dye;
 use serde::Serialize;
 
 /// One animal.
@@ -79,6 +80,9 @@ pub struct PigmentBand {
     pub eumelanin: f64,
     /// Pheomelanin concentration, same units.
     pub pheomelanin: f64,
+    /// A color asked for: there is no melanin then.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dye: Option<Dye>,
 }
 
 impl Species {
@@ -116,6 +120,9 @@ impl PigmentBand {
     /// Absorption coefficient per micrometer for linear R, G, B. Physical: it does not depend on
     /// the diameter, so fine underhair is paler than guard hair of the same pigment.
     pub fn absorption_per_um(&self) -> [f64; 3] {
+        if let Some(dye) = &self.dye {
+            return dye.absorption_per_um;
+        }
         std::array::from_fn(|c| {
             (self.eumelanin * EUMELANIN[c] + self.pheomelanin * PHEOMELANIN[c])
                 / REFERENCE_RADIUS_UM
