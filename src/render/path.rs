@@ -179,7 +179,7 @@ impl Integrator<'_> {
         let worth = Worth::new(look.map(|look| self.glow(&look)));
         let start = Start {
             floor,
-            enough: self.enough * luminance(first.albedo()) * worth.brightness(),
+            enough: self.enough * luminance(first.albedo()),
             worth,
         };
         let first = Arrival {

@@ -15,15 +15,15 @@ const ROULETTE_FROM: u32 = 2;
 /// the light. At 1 pale fur has a sixth more error for an eighth less time, at 0.5 a tenth less for an eighth more.
 const WORTH_FOLLOWING: f32 = 0.7;
 
-/// The same ahead of a ray where it is decided at its end what the place there is worth. At 0.25, with 0.35 and 0.7 below, a fox
-/// has a twelfth less error for as much more time, a bear under the sky takes longer to the same error.
-const WORTH_A_RAY: f32 = 0.35;
+/// The same ahead of a ray where it is decided at its end what the place there is worth. At 0.35, with 0.5 and 1 below, a bear
+/// has a twelfth more error for a twenty-fifth fewer rays.
+const WORTH_A_RAY: f32 = 0.25;
 
 /// Worth of a place, in that of the first one, below which paths may end: see [`WORTH_A_RAY`].
-const WORTH_SHADING: f32 = 0.5;
+const WORTH_SHADING: f32 = 0.35;
 
 /// Worth that each way of a path has at least where it goes on several ways.
-const WORTH_A_WAY: f32 = 1.0;
+const WORTH_A_WAY: f32 = 0.7;
 
 /// Most ways from a point.
 const MOST_WAYS: u32 = 4;
@@ -33,9 +33,6 @@ const SPLIT_UNTIL: u32 = 32;
 
 /// Added to how bright it is, since it is known roughly: places that are thought to be dark may be lit.
 const DIM: f32 = 0.02;
-
-/// Brightness of usual first places.
-const USUAL: f32 = 0.5;
 
 /// Decides what becomes of one path.
 pub(super) struct Worth {
@@ -57,11 +54,6 @@ impl Worth {
         Self {
             first: glow.map(|glow| glow + DIM),
         }
-    }
-
-    /// Factor on the light from which on a ray is always sent for it: in dark places less matters.
-    pub(super) fn brightness(&self) -> f32 {
-        self.first.map_or(1.0, |first| (first / USUAL).sqrt())
     }
 
     /// Probability of sending the ray that continues a path, `depth` events behind the first.
