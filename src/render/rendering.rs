@@ -54,6 +54,8 @@ pub struct Rendering<'a> {
     counts: Counts,
     /// Rays of the sums it went on from.
     rays_before: u64,
+    /// Whether its progress is shown already: it may go on in many pieces.
+    is_shown: bool,
     started: Instant,
 }
 
@@ -81,6 +83,7 @@ impl<'a> Rendering<'a> {
             names,
             counts: Counts::default(),
             rays_before: 0,
+            is_shown: false,
             started: Instant::now(),
         })
     }
@@ -95,10 +98,12 @@ impl<'a> Rendering<'a> {
         progress: &dyn Progress,
         cancel: &Cancel,
     ) -> bool {
-        let pixels: usize = self.tiles.iter().map(|t| t.sums.len()).sum();
-        progress.begin("render", pixels as u64 * u64::from(self.job.spp), "samples");
-        let done = |t: &Tile| u64::from(t.next - self.job.first) * t.sums.len() as u64;
-        progress.advance(self.tiles.iter().map(done).sum());
+        if !std::mem::replace(&mut self.is_shown, true) {
+            let pixels: usize = self.tiles.iter().map(|t| t.sums.len()).sum();
+            progress.begin("render", pixels as u64 * u64::from(self.job.spp), "samples");
+            let done = |t: &Tile| u64::from(t.next - self.job.first) * t.sums.len() as u64;
+            progress.advance(self.tiles.iter().map(done).sum());
+        }
         let stopped = AtomicBool::new(false);
         while let Some(from) = self.next_pass() {
             let is_first = from == self.job.first;
@@ -135,8 +140,12 @@ impl<'a> Rendering<'a> {
             }
             progress.note(&format!("{} spp", to - self.job.first));
         }
-        progress.finish();
-        self.next_pass().is_none()
+        let complete = self.next_pass().is_none();
+        if complete || cancel.is_cancelled() || self.is_late() {
+            progress.finish();
+            self.is_shown = false;
+        }
+        complete
     }
 
     /// One past the last sample.

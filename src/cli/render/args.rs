@@ -1,6 +1,6 @@
 //! Arguments of `vair render`.
 
-use super::{output, parse};
+use super::{live, output, parse};
 use crate::bsdf::ChiangParameters;
 use crate::cli::bake::{parse_count, parse_share, parse_time};
 use crate::cli::color;
@@ -64,6 +64,9 @@ pub(in crate::cli) struct Args {
     /// Time between two saves of the checkpoint.
     #[arg(long, value_name = "TIME", default_value = "30s", value_parser = parse_time)]
     pub(super) checkpoint_every: Duration,
+    /// Shows the picture while it is made in tev (github.com/Tom94/tev), which has to run already: where it listens.
+    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, require_equals = true, default_missing_value = live::TEV)]
+    pub(super) tev: Option<String>,
     /// Renders only a part of the frame, with the same pixels: x,y,width,height.
     #[arg(long, value_parser = parse::crop)]
     pub(super) crop: Option<Crop>,

@@ -1,59 +1,82 @@
 //! Renderings that survive being stopped.
 
 use super::Args;
+use super::live::Live;
 use super::output::Origin;
 use crate::cli::{Console, Failure};
 use crate::io::FileError;
 use crate::render::{FilmSums, FilmSumsError, Rendering};
 use std::io::ErrorKind;
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Renders to the end, or as far as it goes before something stops it, from the checkpoint on if there is
-/// one.
+/// one; shows it meanwhile where somebody looks.
 pub(super) fn run(
     args: &Args,
     rendering: &mut Rendering<'_>,
+    mut live: Option<Live>,
     origin: &Origin,
     console: &Console,
 ) -> Result<(), Failure> {
     let cancel = console.cancel();
-    let Some(path) = &args.checkpoint else {
-        rendering.run(None, console, cancel);
-        return Ok(());
-    };
     let of = origin.text();
-    if path.exists() {
+    if let Some(path) = args.checkpoint.as_ref().filter(|path| path.exists()) {
         go_on(rendering, path, &of).map_err(|error| {
             let help = "delete it to begin anew, or give --checkpoint another name";
             Failure::with_help(error.blame(), error, help)
         })?;
         console.say(format!("going on from {}", path.display()));
     }
-    // A picture is worth more than its checkpoint: it goes on without.
-    let save = |rendering: &Rendering<'_>| {
-        let saved = rendering.sums(&of).write(path);
-        if let Err(error) = &saved {
-            console.say(format!("warning: no more checkpoints: {error}"));
+    let mut saves = args
+        .checkpoint
+        .as_ref()
+        .map(|_| Chore::every(args.checkpoint_every));
+    let mut shows = live.as_ref().map(|_| Chore::every(LOOK));
+    let mut is_over = false;
+    while !is_over {
+        let due = [&saves, &shows].into_iter().flatten().map(|c| c.due).min();
+        let complete = rendering.run(due, console, cancel);
+        is_over = complete || cancel.is_cancelled() || rendering.is_late();
+        if let (Some(chore), Some(path)) = (&mut saves, &args.checkpoint) {
+            let saved = chore.run(is_over, || rendering.sums(&of).write(path));
+            if let Some(Err(error)) = saved {
+                // A picture is worth more than its checkpoint: it goes on without.
+                console.say(format!("warning: no more checkpoints: {error}"));
+                saves = None;
+            }
         }
-        saved.is_ok()
-    };
-    let mut pause = args.checkpoint_every;
-    loop {
-        let complete = rendering.run(Some(Instant::now() + pause), console, cancel);
-        if complete || cancel.is_cancelled() || rendering.is_late() {
-            break;
+        if let (Some(chore), Some(live)) = (&mut shows, &mut live) {
+            chore.run(is_over, || live.show(&rendering.film(), console));
         }
-        let started = Instant::now();
-        if !save(rendering) {
-            rendering.run(None, console, cancel);
-            return Ok(());
-        }
-        // Large pictures take long to save: that may cost a twentieth of the time, no more.
-        pause = args.checkpoint_every.max(20 * started.elapsed());
     }
-    save(rendering);
     Ok(())
+}
+
+/// Time between two looks at a picture that is being made.
+const LOOK: Duration = Duration::from_secs(1);
+
+/// Something to be done now and then beside rendering.
+struct Chore {
+    every: Duration,
+    due: Instant,
+}
+
+impl Chore {
+    fn every(every: Duration) -> Self {
+        let due = Instant::now() + every;
+        Self { every, due }
+    }
+
+    /// Does it if it is due, or for the last time. What takes long may cost a twentieth of the time, no more.
+    fn run<T>(&mut self, is_last: bool, action: impl FnOnce() -> T) -> Option<T> {
+        let started = Instant::now();
+        (is_last || started >= self.due).then(|| {
+            let done = action();
+            self.due = Instant::now() + self.every.max(20 * started.elapsed());
+            done
+        })
+    }
 }
 
 fn go_on(rendering: &mut Rendering<'_>, path: &Path, of: &str) -> Result<(), FilmSumsError> {

@@ -3,6 +3,7 @@
 mod args;
 mod checkpoint;
 mod filled;
+mod live;
 mod material;
 pub(super) mod output;
 mod parse;
@@ -22,6 +23,7 @@ use crate::skin::Skin;
 use crate::species;
 use args::{FilterArg, ModelArg, SamplerArg};
 use glam::Vec3;
+use live::Live;
 use output::{Format, Origin};
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -72,6 +74,15 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     for path in args.stats.iter().chain(&args.checkpoint) {
         check_writable(path)?;
     }
+    let shown = args
+        .output
+        .first()
+        .map_or_else(String::new, |path| path.display().to_string());
+    let live = args
+        .tev
+        .as_ref()
+        .map(|address| Live::connect(address, &shown));
+    let live = live.transpose()?;
     let given = args.table.iter().map(|path| material::given_table(path));
     let given = given.collect::<Result<Vec<_>, Failure>>()?;
     let skin = args.on.load()?;
@@ -129,7 +140,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     }
     let of = identity(args, &species, &groom, &scene);
     let mut rendering = Rendering::new(&job, &scene)?;
-    checkpoint::run(args, &mut rendering, &of, console)?;
+    checkpoint::run(args, &mut rendering, live, &of, console)?;
     let film = rendering.film();
     stages.end("render");
     report(&film, console);
