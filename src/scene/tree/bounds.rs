@@ -1,18 +1,18 @@
 //! Boxes along some axes.
 
-use glam::Vec3;
+use glam::{Vec3A, Vec3Swizzles};
 
 /// A box, by two corners.
 #[derive(Clone, Copy)]
 pub(super) struct Bounds {
-    pub(super) lo: Vec3,
-    pub(super) hi: Vec3,
+    pub(super) lo: Vec3A,
+    pub(super) hi: Vec3A,
 }
 
 impl Bounds {
     pub(super) const NONE: Self = Self {
-        lo: Vec3::INFINITY,
-        hi: Vec3::NEG_INFINITY,
+        lo: Vec3A::INFINITY,
+        hi: Vec3A::NEG_INFINITY,
     };
 
     pub(super) fn with(self, other: Self) -> Self {
@@ -24,12 +24,12 @@ impl Bounds {
 
     /// Half of its surface; 0 for none.
     pub(super) fn area(&self) -> f32 {
-        let size = (self.hi - self.lo).max(Vec3::ZERO);
-        size.x * size.y + size.y * size.z + size.z * size.x
+        let size = (self.hi - self.lo).max(Vec3A::ZERO);
+        size.dot(size.yzx())
     }
 
     /// Twice its middle.
-    pub(super) fn middle(&self) -> Vec3 {
+    pub(super) fn middle(&self) -> Vec3A {
         self.lo + self.hi
     }
 }

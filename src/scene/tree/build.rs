@@ -10,7 +10,7 @@ use super::leaf::{Leaf, RUNS};
 use super::node::{CHILDREN, Child, Node};
 use super::{DEPTH, Run};
 use crate::pages::{self, Table};
-use glam::{Mat3, Vec3, Vec4, Vec4Swizzles};
+use glam::{Mat3, Mat3A, Vec3, Vec3A, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
 /// Bins along an axis.
@@ -147,10 +147,11 @@ impl Fur<'_> {
         &self.joints[first..=first + run.segments as usize]
     }
 
-    fn bounds(&self, number: u32, local: &Mat3) -> Bounds {
+    /// * `local`: rows are the axes.
+    fn bounds(&self, number: u32, local: &Mat3A) -> Bounds {
         let mut bounds = Bounds::NONE;
         for joint in self.joints_of(number) {
-            let at = *local * joint.xyz();
+            let at = *local * Vec3A::from_vec4(*joint);
             bounds.lo = bounds.lo.min(at - joint.w);
             bounds.hi = bounds.hi.max(at + joint.w);
         }
@@ -160,7 +161,7 @@ impl Fur<'_> {
     /// * `axes`: columns.
     fn item(&self, number: u32, axes: &Mat3) -> Item {
         Item {
-            bounds: self.bounds(number, &axes.transpose()),
+            bounds: self.bounds(number, &local(axes)),
             number,
         }
     }
@@ -181,13 +182,13 @@ impl Fur<'_> {
         };
         let (x, y) = along.any_orthonormal_pair();
         let axes = Mat3::from_cols(x, y, along);
-        let area = |local: &Mat3| {
+        let area = |local: &Mat3A| {
             let boxes = some().map(|number| self.bounds(number, local));
             let none = (0.0f32, Bounds::NONE);
             let (sum, all) = boxes.fold(none, |(sum, all), b| (sum + b.area(), all.with(b)));
             sum * all.area()
         };
-        match area(&axes.transpose()) < area(&Mat3::IDENTITY) {
+        match area(&local(&axes)) < area(&Mat3A::IDENTITY) {
             true => axes,
             false => Mat3::IDENTITY,
         }
@@ -226,7 +227,11 @@ impl Fur<'_> {
                 (leaves == 0).then(|| Box::new(self.branch(items, &axes, begin, depth + 1)));
             let (lo, hi) = (lo - room, hi + room);
             Part {
-                child: Child { lo, hi, leaves },
+                child: Child {
+                    lo: lo.into(),
+                    hi: hi.into(),
+                    leaves,
+                },
                 begin,
                 count,
                 below,
@@ -238,6 +243,13 @@ impl Fur<'_> {
         };
         Branch { axes, parts }
     }
+}
+
+/// From the scene to a node.
+///
+/// * `axes`: columns.
+fn local(axes: &Mat3) -> Mat3A {
+    axes.transpose().into()
 }
 
 /// Sorts runs into the parts of a node.
@@ -285,16 +297,16 @@ fn cut(items: &mut [Item], middles: &Bounds, is_even: bool) -> usize {
         });
         return half;
     }
-    let scale = (0.9999 * BINS as f32) / size.max(Vec3::splat(f32::MIN_POSITIVE));
-    let bin = |item: &Item, axis: usize| {
-        let at = (item.bounds.middle()[axis] - middles.lo[axis]) * scale[axis];
-        (at as usize).min(BINS - 1)
+    let scale = (0.9999 * BINS as f32) / size.max(Vec3A::splat(f32::MIN_POSITIVE));
+    let bins_of = |item: &Item| {
+        let at = (item.bounds.middle() - middles.lo) * scale;
+        at.to_array().map(|at| (at as usize).min(BINS - 1))
     };
     let sort = |items: &[Item]| {
         let mut bins: Bins = [[(Bounds::NONE, 0); BINS]; 3];
         for item in items {
-            for (axis, bins) in bins.iter_mut().enumerate() {
-                let (bounds, count) = &mut bins[bin(item, axis)];
+            for (bins, bin) in bins.iter_mut().zip(bins_of(item)) {
+                let (bounds, count) = &mut bins[bin];
                 *bounds = bounds.with(item.bounds);
                 *count += 1;
             }
@@ -314,7 +326,7 @@ fn cut(items: &mut [Item], middles: &Bounds, is_even: bool) -> usize {
     let (axis, place) = cheapest(&bins).unwrap_or((widest, BINS / 2));
     let mut first = 0;
     for i in 0..items.len() {
-        if bin(&items[i], axis) < place {
+        if bins_of(&items[i])[axis] < place {
             items.swap(first, i);
             first += 1;
         }
