@@ -10,7 +10,7 @@ pub(super) const HELP: &str = "Dyes all hair, from tip to root: the color that t
 pub(super) fn parse(text: &str) -> Result<[f64; 3], String> {
     let refused = || format!("`{text}` is not a color such as #c8642a or 0.58,0.13,0.02");
     let color = match text.strip_prefix('#') {
-        Some(digits) if digits.len() == 6 => {
+        Some(digits) if digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit()) => {
             let all = u32::from_str_radix(digits, 16).map_err(|_| refused())?;
             let channel = |shift: u32| linear_from_srgb((all >> shift & 0xff) as f32 / 255.0);
             [16, 8, 0].map(|shift| f64::from(channel(shift)))

@@ -300,7 +300,8 @@ fn cut(items: &mut [Item], middles: &Bounds, is_even: bool) -> usize {
     let scale = (0.9999 * BINS as f32) / size.max(Vec3A::splat(f32::MIN_POSITIVE));
     let bins_of = |item: &Item| {
         let at = (item.bounds.middle() - middles.lo) * scale;
-        at.to_array().map(|at| (at as usize).min(BINS - 1))
+        // Through i32, which processors convert to at once.
+        at.to_array().map(|at| (at as i32 as usize).min(BINS - 1))
     };
     let sort = |items: &[Item]| {
         let mut bins: Bins = [[(Bounds::NONE, 0); BINS]; 3];
