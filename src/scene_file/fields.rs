@@ -22,6 +22,11 @@ pub(crate) static SCENE: Shape = Shape {
             "Pattern of the coat: a built-in one, the path of a recipe, or none.",
         ),
         Field::optional(
+            "color",
+            Kind::Settings(3, number(0.0, 1.0, "")),
+            "All hair dyed, whatever its coat: what it shows on the average in a white room, linear Rec.709.",
+        ),
+        Field::optional(
             "set",
             Kind::Texts(MOST_SETS, 1000),
             "Overrides of fields of the species: \"guard.pigment.0.eumelanin=2\".",

@@ -23,6 +23,8 @@ pub struct SceneFile {
     pub species: String,
     /// A built-in coat, the path of a recipe, or none.
     pub coat: Option<String>,
+    /// All hair dyed to show this, linear Rec.709.
+    pub color: Option<[f64; 3]>,
     /// Overrides of fields of the species.
     pub set: Vec<String>,
     /// A built-in skin or the path of a mesh.
@@ -126,6 +128,7 @@ fn build(root: &Checked, folder: &Path, problems: &mut Problems) -> Option<Scene
             .collect(),
         species: recipe_at(text(root, "species")?),
         coat: text(root, "coat").map(recipe_at),
+        color: numbers(root, "color").and_then(|color| color.try_into().ok()),
         set: match root.get("set").map(|i| &i.value) {
             Some(Value::Texts(texts)) => texts.clone(),
             _ => Vec::new(),

@@ -16,7 +16,7 @@ const SUN: &str =
 
 #[test]
 fn every_key_is_read() {
-    let text = "species = \"fur/my.toml\"\ncoat = \"leopard\"\nset = [\"a.b=1\"]\nskin = \"cat.obj\"
+    let text = "species = \"fur/my.toml\"\ncoat = \"leopard\"\ncolor = [0.5, 0.2, 0.1]\nset = [\"a.b=1\"]\nskin = \"cat.obj\"
 skin_units = \"cm\"\nskin_up = \"z\"\nstrands = 1000\nseed = 7\nenv = \"sky\"\nenv_turn = -20
 env_visible = true\nground = false\nview = [30, 5]\nfov = 20\nzoom = 2\nshift = [0.1, -0.2]
 lens = 8\nfocus = 900\nres = [320, 200]\nspp = 16\nsampler = \"mis\"\nfilter = \"tent\"
@@ -38,6 +38,7 @@ radius = 0.5\nstrength = 1\n[[lamps]]\nshape = \"sun\"\nyaw = 1\npitch = 2\nstre
     let expected = SceneFile {
         species: "scenes/fur/my.toml".into(),
         coat: Some("leopard".into()),
+        color: Some([0.5, 0.2, 0.1]),
         set: vec!["a.b=1".into()],
         skin: Some("scenes/cat.obj".into()),
         skin_units: Some("cm"),

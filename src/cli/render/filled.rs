@@ -15,6 +15,9 @@ impl Args {
             return Ok(args);
         };
         args.name = file.species;
+        if args.coat.is_none() {
+            or(&mut args.color, file.color);
+        }
         or(&mut args.coat, file.coat);
         // The command line's come last and win.
         args.set = [file.set, args.set].concat();
@@ -99,13 +102,23 @@ mod tests {
     fn the_command_line_goes_before_the_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.toml");
-        let text = "species = \"mink\"\nseed = 3\nzoom = 2\nskin = \"ball\"\nset = [\"a=1\"]\nspp = 5\nground = false\nlook = \"srgb\"";
+        let text = "species = \"mink\"\nseed = 3\nzoom = 2\nskin = \"ball\"\nset = [\"a=1\"]\nspp = 5\nground = false\nlook = \"srgb\"\ncoat = \"zebra\"\ncolor = [0.5, 0.2, 0.1]";
         std::fs::write(&path, text).unwrap();
         let name = path.to_str().unwrap();
         let args = filled(&[name]);
         assert_eq!((args.name.as_str(), args.on.name()), ("mink", "ball"));
         assert_eq!((args.seed(), args.zoom, args.spp), (3, Some(2.0), Some(5)));
         assert!(args.no_ground);
+        assert_eq!(args.color, Some([0.5, 0.2, 0.1]));
+        assert_eq!(
+            filled(&[name, "--color", "0,1,0"]).color,
+            Some([0.0, 1.0, 0.0])
+        );
+        let spotted = filled(&[name, "--coat", "leopard"]);
+        assert_eq!(
+            (spotted.coat.as_deref(), spotted.color),
+            (Some("leopard"), None)
+        );
         let args = filled(&[
             name,
             "--seed",

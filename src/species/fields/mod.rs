@@ -138,7 +138,7 @@ pub(crate) static BAND: Shape = Shape {
         ),
         Field::layered(
             "color",
-            Kind::Numbers(3, number(0.0, 1.0, "")),
+            Kind::Settings(3, number(0.0, 1.0, "")),
             "In place of melanin: what a coat all of such hair shows on the average in a white room, linear Rec.709.",
         ),
     ],
