@@ -179,15 +179,19 @@ impl<'a> StationTables<'a> {
                 }
                 let settings = settings_of(station, settings);
                 let baked =
-                    station_table(species, class, station, &settings, cache, progress, cancel)?;
-                if !baked.complete {
-                    return Err(BakeError::Stopped.into());
-                }
-                sources.push(Source::Baked(baked.table));
+                    baked_source(species, class, station, &settings, cache, progress, cancel)?;
+                sources.push(baked);
             }
             classes.push(sources);
         }
         Ok(Self { classes })
+    }
+
+    /// That of a station of a class.
+    fn at(&self, species: &Species, class: usize, station: &Station) -> Option<&Source<'a>> {
+        let stations = &species.classes.get(class)?.stations;
+        let index = stations.iter().position(|other| other.at == station.at)?;
+        self.classes.get(class)?.get(index)
     }
 
     /// The materials of all hair classes, dyed for every pigment zone.
@@ -213,6 +217,23 @@ impl<'a> StationTables<'a> {
             materials.extend(set.map(HairMaterial::Tables));
         }
         Ok(materials)
+    }
+}
+
+/// [`station_table`] where all of it is needed.
+fn baked_source(
+    species: &Species,
+    class: &HairClass,
+    station: &Station,
+    settings: &Settings,
+    cache: Option<&Cache>,
+    progress: &dyn Progress,
+    cancel: &Cancel,
+) -> Result<Source<'static>, AssemblyError> {
+    let baked = station_table(species, class, station, settings, cache, progress, cancel)?;
+    match baked.complete {
+        true => Ok(Source::Baked(baked.table)),
+        false => Err(BakeError::Stopped.into()),
     }
 }
 

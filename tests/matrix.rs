@@ -172,7 +172,7 @@ fn eight_animals_on_three_skins() {
             face: 16,
             ..Settings::cone()
         };
-        let looks = looks(&species, &bake, None, &Silent, &Cancel::default()).unwrap();
+        let looks = looks(&species, None, &bake, None, &Silent, &Cancel::default()).unwrap();
         for ground in &grounds {
             let settings = GroomSettings {
                 strands: Some(STRANDS),

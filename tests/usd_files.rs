@@ -66,7 +66,7 @@ fn export(name: &str, species: &str, skin: &str, count: usize, settings: &AssetS
     };
     // Materials are the same whatever the strands: once is enough.
     let looks = match name {
-        "fox" => looks(&species, &bake, None, &Silent, &Cancel::default()).unwrap(),
+        "fox" => looks(&species, None, &bake, None, &Silent, &Cancel::default()).unwrap(),
         _ => Vec::new(),
     };
     let parts = Parts {
@@ -169,7 +169,7 @@ fn coats_to_choose_from() {
                 let mut cat = species::load("cat", &[]).unwrap();
                 cat.wear(name).unwrap();
                 let groom = grown(&skin, &cat, STRANDS);
-                let looks = looks(&cat, &bake, None, progress, cancel).unwrap();
+                let looks = looks(&cat, None, &bake, None, progress, cancel).unwrap();
                 let levels = levels(&groom, &skin, &cat, 2).unwrap();
                 (cat, groom, looks, levels)
             })

@@ -75,7 +75,8 @@ pub fn match_colors(
     };
     let scene = Scene::build(SceneParts {
         groom: &groom,
-        materials: dye(0.0)?,
+        // Any: they say whether hairs have sides.
+        materials: dye(DEPTHS[DEPTHS.len() / 2])?,
         skin: Some((skin, color)),
         environment: Environment::white(),
         lamps: &[],
@@ -108,7 +109,8 @@ pub fn match_colors(
         let [share, least] = TOLERANCE;
         let is_off = |c: usize| (shown[c] - dye.color[c]).abs() > share * dye.color[c] + least;
         if (0..3).any(is_off) {
-            let ([r, g, b], [x, y, z]) = (dye.color, shown);
+            let [r, g, b] = dye.color.map(|c| (1e3 * c).round() / 1e3);
+            let [x, y, z] = shown;
             let sentence = format!("this coat cannot show {r} {g} {b}, but {x:.3} {y:.3} {z:.3}");
             if !out_of_reach.contains(&sentence) {
                 out_of_reach.push(sentence);

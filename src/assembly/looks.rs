@@ -1,6 +1,6 @@
 //! Hair shaders in closed form for other renderers, fitted to the tables of a species.
 
-use super::{AssemblyError, coat_parts, station_table};
+use super::{AssemblyError, Source, StationTables, baked_source, coat_parts};
 use crate::bake::{BakeError, Cache, Settings};
 use crate::bsdf::CoatPart;
 use crate::export::asset::{ClassLook, HairLook, LobeError};
@@ -11,12 +11,13 @@ use crate::table::{Fit, Model};
 /// Chiang's hair model fitted to every hair class and zone of pigment: to the table of the station where
 /// the hair is widest, dyed for each zone.
 ///
-/// * `settings`: of the bakes that the cache does not hold; azimuths are averaged over.
+/// * `tables`: of all stations, if they are there already. * `settings`: of the bakes that the cache does not hold; azimuths are averaged over.
 ///
 /// # Errors
 /// A fiber that cannot be built, dyed or fitted, or [`BakeError::Stopped`].
 pub fn looks(
     species: &Species,
+    tables: Option<&StationTables<'_>>,
     settings: &Settings,
     cache: Option<&Cache>,
     progress: &dyn Progress,
@@ -31,10 +32,14 @@ pub fn looks(
         let Some(station) = class.widest() else {
             continue;
         };
-        let baked = station_table(species, class, station, &settings, cache, progress, cancel)?;
-        if !baked.complete {
-            return Err(BakeError::Stopped.into());
-        }
+        let own: Source<'_>;
+        let table = match tables.and_then(|tables| tables.at(species, index, station)) {
+            Some(table) => table,
+            None => {
+                own = baked_source(species, class, station, &settings, cache, progress, cancel)?;
+                &own
+            }
+        };
         let (parts, dyes) = coat_parts(&species.pigments(index));
         progress.begin("fitting", dyes.len() as u64, "materials");
         let mut fitted = Vec::with_capacity(dyes.len());
@@ -42,7 +47,7 @@ pub fn looks(
             if cancel.is_cancelled() {
                 return Err(BakeError::Stopped.into());
             }
-            let maps = baked.table.dye(band.absorption_per_um())?;
+            let maps = table.dye(band.absorption_per_um())?;
             fitted.push(look(&Model::Chiang.fit(&maps, &[0, 1, 2])?));
             progress.advance(1);
         }

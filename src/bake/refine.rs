@@ -62,9 +62,7 @@ impl Bake<'_> {
         }
         let mut span = end..end + count;
         let start = Instant::now();
-        let mut flown = self.fly(&span, &hand, progress, cancel);
-        hand.pace = Some(count as f64 / start.elapsed().as_secs_f64().max(1e-9));
-        hand.last = count;
+        let mut flown = self.fly_timed(&span, &mut hand, progress, cancel);
         // With a deadline the pass goes on to its second: another one would fetch twice as much memory.
         let joins = goal.until.is_some() && goal.error.is_none();
         while flown && joins && start.elapsed().as_secs_f64() < PASS_SECONDS {
@@ -72,10 +70,7 @@ impl Bake<'_> {
                 break;
             };
             let more = span.end..span.end + count;
-            let start = Instant::now();
-            flown = self.fly(&more, &hand, progress, cancel);
-            hand.pace = Some(count as f64 / start.elapsed().as_secs_f64().max(1e-9));
-            hand.last = count;
+            flown = self.fly_timed(&more, &mut hand, progress, cancel);
             span.end = more.end;
         }
         let count = span.end - span.start;
@@ -97,6 +92,21 @@ impl Bake<'_> {
         }
         self.report(&mut hand, seconds, goal, progress);
         None
+    }
+
+    /// Flies photons and takes down how fast they were; `false` if it was cancelled.
+    fn fly_timed(
+        &self,
+        span: &Range<u64>,
+        hand: &mut Hand,
+        progress: &dyn Progress,
+        cancel: &Cancel,
+    ) -> bool {
+        let start = Instant::now();
+        let flown = self.fly(span, hand, progress, cancel);
+        hand.last = span.end - span.start;
+        hand.pace = Some(hand.last as f64 / start.elapsed().as_secs_f64().max(1e-9));
+        flown
     }
 
     /// Tells how large the error is and where the bake will end, if a pass was long enough for that.

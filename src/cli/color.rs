@@ -1,6 +1,11 @@
 //! A color as an option.
 
+use super::{Console, Failure};
+use crate::assembly::{self, StationTables};
 use crate::color::linear_from_srgb;
+use crate::groom::GroomSettings;
+use crate::skin::Skin;
+use crate::species::Species;
 
 /// Help of `--color`, the same for all commands that have it.
 pub(super) const HELP: &str = "Dyes all hair, from tip to root: the color that the coat shows on the average in a white room, \
@@ -16,11 +21,7 @@ pub(super) fn parse(text: &str) -> Result<[f64; 3], String> {
             [16, 8, 0].map(|shift| f64::from(channel(shift)))
         }
         Some(_) => return Err(refused()),
-        None => {
-            let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
-            let numbers = numbers.map_err(|_| refused())?;
-            numbers.try_into().map_err(|_| refused())?
-        }
+        None => numbers(text).ok_or_else(refused)?,
     };
     match color.iter().all(|c| (0.0..=1.0).contains(c)) {
         true => Ok(color),
@@ -28,6 +29,27 @@ pub(super) fn parse(text: &str) -> Result<[f64; 3], String> {
             "`{text}` is no color of a coat: red, green and blue must be 0 to 1"
         )),
     }
+}
+
+/// `R,G,B`.
+pub(super) fn numbers(text: &str) -> Option<[f64; 3]> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    numbers.ok()?.try_into().ok()
+}
+
+/// Gives dyes the strength that their colors need, and says what cannot be shown.
+pub(super) fn match_colors(
+    species: &mut Species,
+    tables: &StationTables<'_>,
+    skin: &Skin,
+    grown: &GroomSettings,
+    console: &Console,
+) -> Result<(), Failure> {
+    let cancel = console.cancel();
+    for missed in assembly::match_colors(species, tables, skin, grown, console, cancel)? {
+        console.say(format!("warning: {missed}"));
+    }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -256,13 +256,13 @@ fn looks(
     };
     let cancel = console.cancel();
     let cache = cache.as_ref();
+    let mut tables = None;
     if species.is_dyed() {
-        let tables = StationTables::new(species, &[], &bake, cache, console, cancel)?;
-        for missed in assembly::match_colors(species, &tables, skin, grown, console, cancel)? {
-            console.say(format!("warning: {missed}"));
-        }
+        let all = StationTables::new(species, &[], &bake, cache, console, cancel)?;
+        color::match_colors(species, &all, skin, grown, console)?;
+        tables = Some(all);
     }
-    let looks = assembly::looks(species, &bake, cache, console, cancel)?;
+    let looks = assembly::looks(species, tables.as_ref(), &bake, cache, console, cancel)?;
     for (class, look) in species.classes.iter().zip(&looks) {
         let errors: Vec<String> = (look.parts.iter().flatten())
             .map(|zone| format!("{:.0} %", 100.0 * zone.mean_error()))

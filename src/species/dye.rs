@@ -29,14 +29,14 @@ impl Dye {
 impl PigmentBand {
     /// Hair that absorbs so much, per micrometer for linear R, G, B, from tip to root.
     pub(crate) fn absorbing(absorption_per_um: [f64; 3]) -> Self {
-        Self::dyed(Some(Dye {
+        Self::without_melanin(Some(Dye {
             color: [0.0; 3],
             absorption_per_um,
         }))
     }
 
     /// Hair without melanin from tip to root.
-    pub(crate) fn dyed(dye: Option<Dye>) -> Self {
+    pub(crate) fn without_melanin(dye: Option<Dye>) -> Self {
         Self {
             to_mm: f64::INFINITY,
             softness_mm: 0.0,
@@ -54,7 +54,7 @@ impl Species {
     pub fn dye(&mut self, color: [f64; 3]) {
         self.coat = None;
         for class in &mut self.classes {
-            class.pigment = vec![PigmentBand::dyed(Some(Dye::new(color)))];
+            class.pigment = vec![PigmentBand::without_melanin(Some(Dye::new(color)))];
         }
         let [r, g, b] = color;
         self.text
@@ -64,10 +64,7 @@ impl Species {
 
     /// Whether a color was asked for anywhere.
     pub fn is_dyed(&self) -> bool {
-        let classes = self.classes.iter().map(|class| &class.pigment);
-        let zones = self.coat.iter().flat_map(|coat| &coat.zones);
-        let painted = zones.flat_map(|zone| [&zone.guard, &zone.under]);
-        let mut bands = classes.chain(painted).flatten();
+        let mut bands = (0..self.classes.len()).flat_map(|class| self.pigments(class).concat());
         bands.any(|band| band.dye.is_some())
     }
 

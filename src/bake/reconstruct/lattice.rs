@@ -12,6 +12,7 @@
 //! photons say against it is put right per node.
 
 use super::field::{Field, Plane};
+use crate::math::frame;
 use crate::math::unicube::Unicube;
 use crate::math::widest;
 use crate::table::Nodes;
@@ -96,13 +97,12 @@ impl Lattice {
         let point = |texel: usize, i: usize| {
             let at = |i: usize| (i as f64 + 0.5) / SIDE as f64;
             let (w, _) = cube.direction(texel, at(i % SIDE), at(i / SIDE));
-            let cos = w.x.hypot(w.y);
             let phi = (w.y.atan2(w.x).abs() / PI * size[2] as f64) as f32;
             let at = (phi - 0.5).clamp(0.0, (size[2] - 1) as f32);
             let low = (at as usize).min(size[2] - 2);
             Point {
-                theta: (w.z.atan2(cos) * cells) as f32,
-                weight: (1.0 / cos.max(1e-6) / (SIDE * SIDE) as f64) as f32,
+                theta: (frame::theta_of(w) * cells) as f32,
+                weight: (1.0 / w.x.hypot(w.y).max(1e-6) / (SIDE * SIDE) as f64) as f32,
                 phi: (phi as usize).min(size[2] - 1) as u32,
                 low: low as u32,
                 high: at - low as f32,

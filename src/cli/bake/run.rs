@@ -44,9 +44,15 @@ pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), 
         cache: Cache::of_user().filter(|_| !args.no_cache),
     };
     if job.dye.is_some() && args.shard.is_none() {
+        let pigment = match &band.dye {
+            Some(dye) => format!("the dye of {:?}", dye.color),
+            None => format!(
+                "eumelanin {} and pheomelanin {}",
+                band.eumelanin, band.pheomelanin
+            ),
+        };
         console.say(format!(
-            "materials differ by color: a table of R G B, with eumelanin {} and pheomelanin {}",
-            band.eumelanin, band.pheomelanin
+            "materials differ by color: a table of R G B, with {pigment}"
         ));
     }
     job.run()

@@ -5,6 +5,7 @@ use crate::cli::{Console, Failure};
 use crate::render::Film;
 use std::io::Error;
 use std::net::{TcpStream, ToSocketAddrs};
+use std::path::Path;
 use std::time::Duration;
 use tev_client::{PacketCreateImage, PacketUpdateImage, TevClient};
 
@@ -25,11 +26,11 @@ pub(super) struct Live {
 }
 
 impl Live {
-    /// * `address`: of tev, host and port. * `name`: of the picture there.
+    /// * `address`: of tev, host and port. * `path`: of the picture, which has its name there.
     ///
     /// # Errors
     /// Nobody listens.
-    pub(super) fn connect(address: &str, name: &str) -> Result<Self, Failure> {
+    pub(super) fn connect(address: &str, path: &Path) -> Result<Self, Failure> {
         let socket = connect(address).map_err(|error| {
             let message = format!("no tev answers at {address}: {error}");
             let help = format!("start tev, or say where it listens: --tev={TEV}");
@@ -37,7 +38,7 @@ impl Live {
         })?;
         Ok(Self {
             client: Some(TevClient::wrap(socket)),
-            name: name.replace('\0', " "),
+            name: path.to_string_lossy().into_owned(),
             is_open: false,
         })
     }

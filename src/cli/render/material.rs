@@ -5,7 +5,7 @@ use crate::assembly::{self, StationTables};
 use crate::bake::{Cache, Settings};
 use crate::blame::Blame;
 use crate::bsdf::{AlongStrand, Chiang, HairMaterial};
-use crate::cli::{Console, Failure};
+use crate::cli::{Console, Failure, color};
 use crate::groom::GroomSettings;
 use crate::skin::Skin;
 use crate::species::Species;
@@ -56,9 +56,7 @@ pub(super) fn materials(
     };
     let cancel = console.cancel();
     let tables = StationTables::new(species, given, &bake, cache.as_ref(), console, cancel)?;
-    for missed in assembly::match_colors(species, &tables, skin, grown, console, cancel)? {
-        console.say(format!("warning: {missed}"));
-    }
+    color::match_colors(species, &tables, skin, grown, console)?;
     let materials = tables.materials(species)?;
     match args.model {
         ModelArg::ChiangFit => {

@@ -74,14 +74,10 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     for path in args.stats.iter().chain(&args.checkpoint) {
         check_writable(path)?;
     }
-    let shown = args
-        .output
-        .first()
-        .map_or_else(String::new, |path| path.display().to_string());
     let live = args
         .tev
         .as_ref()
-        .map(|address| Live::connect(address, &shown));
+        .map(|address| Live::connect(address, &args.output[0]));
     let live = live.transpose()?;
     let given = args.table.iter().map(|path| material::given_table(path));
     let given = given.collect::<Result<Vec<_>, Failure>>()?;

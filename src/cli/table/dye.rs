@@ -2,6 +2,7 @@
 
 use crate::blame::Blame;
 use crate::cli::bake::find_class;
+use crate::cli::color;
 use crate::cli::{Console, Failure};
 use crate::species::{self, PigmentBand};
 use crate::table::StructureTable;
@@ -100,10 +101,8 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
 
 /// `R,G,B` or a single number for all three.
 fn parse_rgb(text: &str) -> Result<[f64; 3], String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|w| w.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok([all]) => Ok([*all; 3]),
-        Ok([r, g, b]) => Ok([*r, *g, *b]),
-        _ => Err("expected three numbers separated by commas".to_owned()),
-    }
+    let all = || text.trim().parse().ok().map(|all| [all; 3]);
+    color::numbers(text)
+        .or_else(all)
+        .ok_or_else(|| "expected three numbers separated by commas".to_owned())
 }

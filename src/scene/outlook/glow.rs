@@ -21,7 +21,11 @@ const DIRECTIONS: usize = 24;
 /// * `direct`: share of the environment's light that comes to each cell.
 pub(super) fn glow(grid: &Grid, fur: &Fur, direct: &[f32]) -> Vec<f32> {
     let mut sweeps: Vec<(Vec3, Sweep)> = (0..DIRECTIONS)
-        .map(|i| (spiral(i), Sweep::new(grid)))
+        .map(|i| {
+            let mut sweep = Sweep::new(grid);
+            sweep.face(fur, spiral(i));
+            (spiral(i), sweep)
+        })
         .collect();
     let mut glow = direct.to_vec();
     let mut sent = vec![0.0f32; grid.cells()];
@@ -30,7 +34,7 @@ pub(super) fn glow(grid: &Grid, fur: &Fur, direct: &[f32]) -> Vec<f32> {
             sent[cell as usize] = ALBEDO * glow;
         }
         let from_one_side = |(dir, sweep): &mut (Vec3, Sweep)| -> Vec<f32> {
-            sweep.run_with(grid, fur, *dir, 0.0, |cell, blocked| sent[cell] * blocked);
+            sweep.carry(grid, *dir, 0.0, |cell, blocked| sent[cell] * blocked);
             let at = |&cell: &u32| {
                 let cell = cell as usize;
                 // In the middle of the cell: about half of what it blocks is in front.

@@ -30,23 +30,27 @@ impl Sweep {
     ///
     /// What a cell itself blocks is left out: the brightest places in it matter most, and see past it.
     pub(super) fn run(&mut self, grid: &Grid, fur: &Fur, dir: Vec3) {
-        self.run_with(grid, fur, dir, 1.0, |_, _| 0.0);
+        self.face(fur, dir);
+        self.carry(grid, dir, 1.0, |_, _| 0.0);
     }
 
-    /// The same with what cells send in the direction themselves.
+    /// Takes down what each cell lets through from a direction.
+    pub(super) fn face(&mut self, fur: &Fur, dir: Vec3) {
+        for (&cell, depth) in fur.cells.iter().zip(fur.depths(dir)) {
+            self.through[cell as usize] = exp_minus(depth);
+        }
+    }
+
+    /// As [`Self::run`] from the direction that it faces, with what cells send on themselves.
     ///
     /// * `outside`: light that comes in. * `sent`: by a cell that blocks a share of the light.
-    pub(super) fn run_with(
+    pub(super) fn carry(
         &mut self,
         grid: &Grid,
-        fur: &Fur,
         dir: Vec3,
         outside: f32,
         sent: impl Fn(usize, f32) -> f32,
     ) {
-        for (&cell, depth) in fur.cells.iter().zip(fur.depths(dir)) {
-            self.through[cell as usize] = exp_minus(depth);
-        }
         let counts = grid.counts.to_array().map(|n| n as usize);
         let strides = [1, counts[0], counts[0] * counts[1]];
         let [x, y, z] = dir.abs().to_array();

@@ -54,7 +54,7 @@ impl Reader<'_> {
             return Some(PigmentBand {
                 eumelanin: eumelanin?,
                 pheomelanin: pheomelanin?,
-                ..PigmentBand::dyed(None)
+                ..PigmentBand::without_melanin(None)
             });
         }
         for key in melanin {
@@ -65,7 +65,7 @@ impl Reader<'_> {
             }
         }
         let color = numbers(band, "color")?.try_into().ok()?;
-        Some(PigmentBand::dyed(Some(Dye::new(color))))
+        Some(PigmentBand::without_melanin(Some(Dye::new(color))))
     }
 
     /// End and softness of a band that starts `from_mm` from the tip.
