@@ -50,7 +50,7 @@ fn main() -> Result<(), SceneError> {
             if let Some(hit) = scene.strands.closest(ray, f32::INFINITY, None) {
                 let dir = sphere(&mut Rng::new(1, i as u64));
                 let origin = ray.origin + hit.t * ray.dir;
-                scattered.push((Ray { origin, dir }, scene.strands.leave(&hit, dir)));
+                scattered.push((Ray { origin, dir }, hit.departure().along(dir)));
             }
         }
     });

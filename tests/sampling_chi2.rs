@@ -133,7 +133,7 @@ fn every_species_samples_what_its_density_says() {
             let material = HairMaterial::Tables(set);
             for (i, theta) in [-1.45, -0.5, 0.11, 0.9].into_iter().enumerate() {
                 let wo = frame::direction(theta, 0.0).as_vec3();
-                let bsdf = material.at(place(3.0), wo, 0.0, 0.5);
+                let bsdf = material.at(place(3.0), wo, || 0.0, 0.5);
                 let z = chi_squared(&bsdf, i as u64, |_| 1.0);
                 assert!(
                     z < LIMIT,
@@ -199,7 +199,7 @@ fn a_density_off_by_two_percent_is_caught() {
             0.98
         }
     };
-    let z = chi_squared(&material.at(place(1.0), wo, 0.0, 0.5), 9, checker);
+    let z = chi_squared(&material.at(place(1.0), wo, || 0.0, 0.5), 9, checker);
     assert!(z > LIMIT, "only {z:.1} sigma");
 }
 
@@ -222,7 +222,7 @@ fn the_hair_model_samples_what_its_density_says() {
                 across,
                 ..place(1.0)
             };
-            let z = chi_squared(&material.at(at, wo, 0.0, 0.5), i as u64, |_| 1.0);
+            let z = chi_squared(&material.at(at, wo, || 0.0, 0.5), i as u64, |_| 1.0);
             assert!(z < LIMIT, "{beta_m} {theta} {across}: z = {z}");
         }
     }

@@ -173,7 +173,7 @@ fn scatter(
         let hit = scene.strands.closest(ray, f32::INFINITY, *leaving)?;
         let dir = dir(i as u64);
         let origin = ray.origin + hit.t * ray.dir;
-        Some((Ray { origin, dir }, scene.strands.leave(&hit, dir)))
+        Some((Ray { origin, dir }, hit.departure().along(dir)))
     };
     rays.iter().enumerate().filter_map(on).collect()
 }

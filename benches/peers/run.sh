@@ -4,8 +4,8 @@
 #   benches/peers/run.sh agree [OPTIONS]   same scene and hair model in Vair and Mitsuba: are the pictures the same?
 #   benches/peers/run.sh race [OPTIONS]    time to equal error: Vair (table, Chiang), Mitsuba, Cycles
 #
-# Needs Python 3.11 and, for Mitsuba's fast mode, an LLVM library: 15 or 19 work (Debian: libllvm19), 14 does not.
-# DRJIT_LIBLLVM_PATH names another.
+# Needs Python 3.11 and, for Mitsuba's fast mode, LLVM 19 (Debian: apt-get install libllvm19): 14 does not work, and
+# 15 does on processors with AVX-512 only. DRJIT_LIBLLVM_PATH names another.
 set -eu
 cd "$(dirname "$0")/../.."
 what=${1:-agree}
@@ -20,12 +20,20 @@ if [ "$what" = race ] && ! [ -x target/peers-cycles/bin/python ]; then
     target/peers-cycles/bin/pip install --quiet --disable-pip-version-check bpy==5.0.1
 fi
 if [ -z "${DRJIT_LIBLLVM_PATH:-}" ]; then
-    for library in /usr/lib/*/libLLVM.so.19* /usr/lib/*/libLLVM-19.so /usr/lib/*/libLLVM-15.so; do
+    libraries="/usr/lib/*/libLLVM.so.19* /usr/lib/*/libLLVM-19.so"
+    if grep -qs avx512f /proc/cpuinfo; then
+        libraries="$libraries /usr/lib/*/libLLVM-15.so"
+    fi
+    for library in $libraries; do
         if [ -e "$library" ]; then
             export DRJIT_LIBLLVM_PATH="$library"
             break
         fi
     done
+    if [ -z "${DRJIT_LIBLLVM_PATH:-}" ]; then
+        echo "no LLVM that Mitsuba can use: apt-get install libllvm19, or name a library in DRJIT_LIBLLVM_PATH" >&2
+        exit 3
+    fi
 fi
 test -x target/release/vair || cargo build --release
 exec $venv/bin/python -B "benches/peers/$what.py" "$@"

@@ -7,7 +7,7 @@
 
 use super::BsdfSample;
 use crate::color::Rgb;
-use crate::math::quick::{exp, turns};
+use crate::math::quick::{exp, sin_cos_of_turns, turns};
 use crate::math::{bessel, fresnel};
 use glam::{Vec3, Vec4};
 use std::f32::consts::{FRAC_PI_8, PI, TAU};
@@ -93,7 +93,7 @@ impl Longitudinal {
     fn sample(&self, [sin_q, cos_q]: [f32; 2], u: f32, v: f32) -> f32 {
         let cos = 1.0 + self.variance * (u + (1.0 - u) * self.floor).ln();
         let sin = (1.0 - cos * cos).max(0.0).sqrt();
-        (-cos * sin_q + sin * (TAU * v).cos() * cos_q).clamp(-1.0, 1.0)
+        (-cos * sin_q + sin * sin_cos_of_turns(v).1 * cos_q).clamp(-1.0, 1.0)
     }
 }
 
@@ -204,9 +204,11 @@ impl Chiang {
         let cos_gamma_t = (1.0 - sin_gamma_t * sin_gamma_t).sqrt();
         let sin_t = sin / self.eta;
         let crossing = 2.0 * cos_gamma_t / (1.0 - sin_t * sin_t).sqrt();
-        let (gamma_i, gamma_t) = (h.asin(), sin_gamma_t.asin());
+        let cos_gamma_i = (1.0 - h * h).sqrt();
+        let gamma_i = TAU * turns(h, cos_gamma_i);
+        let gamma_t = TAU * turns(sin_gamma_t, cos_gamma_t);
         let energy = energies(
-            fresnel(cos * (1.0 - h * h).sqrt(), self.eta),
+            fresnel(cos * cos_gamma_i, self.eta),
             exp((-self.sigma_a * crossing).extend(0.0)).truncate(),
         );
         let sums = Vec4::from(energy.map(|e| e.element_sum()));
@@ -301,7 +303,7 @@ impl ChiangLobe<'_> {
             3 => near_zero(TAU * around),
             _ => near_zero(self.exit[lobe] + self.model.azimuthal.sample(around)),
         };
-        let (s, c) = azimuth.sin_cos();
+        let (s, c) = sin_cos_of_turns(azimuth * (1.0 / TAU));
         let (density, pdf) = self.toward(sin, cos, azimuth);
         (pdf > 0.0 && pdf.is_finite()).then(|| BsdfSample {
             wi: Vec3::new(cos * c, cos * s, sin),

@@ -177,14 +177,18 @@ impl HairMaterial {
     /// The model at a point of a strand, seen along `wo`.
     ///
     /// * `wo`: unit direction to the viewer in the strand frame.
-    /// * `azimuth`: of `wo` around the strand from the major axis of its section, radians. Of effect
+    /// * `azimuth`: of `wo` around the strand from the major axis of its section, radians; asked for only
     ///   where tables tell azimuths apart.
     /// * `u`: a random number in `[0, 1)` that chooses where values blend.
-    pub fn at(&self, place: Place, wo: Vec3, azimuth: f32, u: f32) -> Bsdf<'_> {
+    pub fn at(&self, place: Place, wo: Vec3, azimuth: impl FnOnce() -> f32, u: f32) -> Bsdf<'_> {
         match self {
             Self::Isotropic(albedo) => Bsdf::Isotropic(*albedo),
             Self::Tables(set) => {
                 let (table, u) = set.choose(place, u);
+                let azimuth = match table.nodes().azimuths.is_averaged() {
+                    true => 0.0,
+                    false => azimuth(),
+                };
                 Bsdf::Table(table.lobe_at(wo, azimuth, u))
             }
             Self::Chiang(models) => {

@@ -23,12 +23,12 @@ impl Integrator<'_> {
             Sampler::Bsdf | Sampler::QsirOneRay => Rgb::ZERO,
             Sampler::Qsir => {
                 let mut sum = Rgb::ZERO;
-                for c in candidates(scatter, at.prospect, at.plan(), draws, depth) {
+                candidates(scatter, at.prospect, at.plan(), draws, depth, |c| {
                     let light = at.throughput * c.density * c.light * c.weight;
                     let sent = chance_of_asking(light, c.open, at.enough);
                     sum +=
                         self.ask_by_chance(at, c.dir, f32::INFINITY, light, [c.chance, sent], out);
-                }
+                });
                 sum
             }
             Sampler::Env | Sampler::Mis => {

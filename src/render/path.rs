@@ -262,8 +262,6 @@ impl Integrator<'_> {
             return (light, None);
         }
         throughput /= survival;
-        // Asked for before it is known whether the ray escapes: many do.
-        let spot = self.scene.environment.spot(direction.dir);
         let (ray, leaving) = at.scatter.leave(direction.dir);
         out.rays += 1;
         let hit = self.scene.closest(&ray, leaving);
@@ -274,6 +272,7 @@ impl Integrator<'_> {
         }
         let Some(hit) = hit else {
             if !at.on_floor {
+                let spot = self.scene.environment.spot(direction.dir);
                 let (radiance, light_pdf, _) = at.prospect.eval(spot);
                 let share = self.escape_weight(at, direction.pdf, light_pdf);
                 light += throughput * radiance * share;

@@ -198,62 +198,60 @@ impl<'a> Prospect<'a> {
 /// Most candidates of a kind.
 const MOST: usize = 4;
 
-/// The candidates of a plan at one scattering point.
+/// The candidates of a plan at one scattering point, each told to `each`.
 ///
 /// All texels that they need are asked for before the first of them is read.
-pub(super) fn candidates<'a>(
-    scatter: &'a Scatter<'_>,
-    prospect: Prospect<'a>,
+#[inline(always)]
+pub(super) fn candidates(
+    scatter: &Scatter<'_>,
+    prospect: Prospect<'_>,
     plan: Plan,
     draws: &Draws,
     bounce: u32,
-) -> impl Iterator<Item = Candidate> + 'a {
+    mut each: impl FnMut(Candidate),
+) {
     // Each kind is an aligned run of its own net.
-    let points = |purpose, count: u32| {
-        let net = draws.net(bounce, purpose);
-        let first = draws.run(count);
-        (0..count).map(move |j| net.point(first + j))
-    };
+    let net = draws.net(bounce, Purpose::Light);
+    let first = draws.run(plan.lights);
     let mut aims = [None; MOST];
-    for (aim, u) in aims.iter_mut().zip(points(Purpose::Light, plan.lights)) {
+    for (j, aim) in (0..plan.lights).zip(&mut aims) {
+        let u = net.point(first + j);
         *aim = prospect.aim([u[0], u[1]]).map(|aim| (aim, u[2]));
     }
+    let net = draws.net(bounce, Purpose::Scatter);
+    let first = draws.run(plan.scattering);
     let mut drawn = [None; MOST];
-    for (drawn, u) in drawn
-        .iter_mut()
-        .zip(points(Purpose::Scatter, plan.scattering))
-    {
+    for (j, drawn) in (0..plan.scattering).zip(&mut drawn) {
+        let u = net.point(first + j);
         let direction = scatter.sample([u[0], u[1], u[2]]);
         *drawn = direction.map(|s| (s, prospect.environment.spot(s.dir), u[3]));
     }
     // What the sampling of one side knows already is not looked up again.
-    let lights = aims
-        .into_iter()
-        .flatten()
-        .filter_map(move |((aim, favor, open), chance)| {
-            let s = prospect.environment.draw(aim)?;
-            let (density, scatter_pdf) = scatter.eval(s.dir);
-            Some(Candidate {
-                dir: s.dir,
-                density,
-                light: s.radiance,
-                weight: 1.0 / plan.density(scatter_pdf, s.pdf * favor),
-                chance,
-                open,
-            })
-        });
-    let scattering = drawn.into_iter().flatten().map(move |(s, spot, chance)| {
-        let (light, light_pdf, open) = prospect.eval(spot);
-        Candidate {
+    for (s, spot, chance) in drawn[..plan.scattering as usize].iter().flatten() {
+        let (light, light_pdf, open) = prospect.eval(*spot);
+        each(Candidate {
             dir: s.dir,
             density: s.weight * s.pdf,
             light,
             weight: 1.0 / plan.density(s.pdf, light_pdf),
-            chance,
+            chance: *chance,
             open,
-        }
-    });
-    scattering.chain(lights)
+        });
+    }
+    for ((aim, favor, open), chance) in aims[..plan.lights as usize].iter().flatten() {
+        let Some(s) = prospect.environment.draw(*aim) else {
+            continue;
+        };
+        let (density, scatter_pdf) = scatter.eval(s.dir);
+        each(Candidate {
+            dir: s.dir,
+            density,
+            light: s.radiance,
+            weight: 1.0 / plan.density(scatter_pdf, s.pdf * favor),
+            chance: *chance,
+            open: *open,
+        });
+    }
 }
 
 /// The probability with which a ray that would bring `light` is sent; what it brings is divided by it.
@@ -279,12 +277,12 @@ pub(super) fn resample(
 ) -> Option<Direction> {
     let mut choice = draws.point(bounce, Purpose::Choice)[0];
     let (mut sum, mut kept) = (0.0f32, None);
-    for candidate in candidates(scatter, prospect, plan, draws, bounce) {
+    candidates(scatter, prospect, plan, draws, bounce, |candidate| {
         let value = target.value(luminance(candidate.density), luminance(candidate.light));
         let weight = value * candidate.weight;
         // Also drops NaN.
         if !(weight > 0.0 && weight.is_finite()) {
-            continue;
+            return;
         }
         sum += weight;
         // Weighted reservoir with one random number: stretch what is left of it each time.
@@ -295,7 +293,7 @@ pub(super) fn resample(
         } else {
             choice = (choice - share) / (1.0 - share);
         }
-    }
+    });
     let (candidate, value) = kept?;
     Some(Direction {
         dir: candidate.dir,

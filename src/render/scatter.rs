@@ -4,8 +4,8 @@ use crate::bsdf::{Bsdf, Place};
 use crate::color::Rgb;
 use crate::math::frame::strand_frame;
 use crate::sampling::concentric_disk;
-use crate::scene::{Hit, Leaving, Ray, Scene, StrandHit, Strands};
-use glam::{Mat3, Vec3, Vec4Swizzles};
+use crate::scene::{Departure, Hit, Leaving, Ray, Scene};
+use glam::{Mat3, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// A scattering point.
@@ -19,8 +19,7 @@ enum Kind<'a> {
         bsdf: Bsdf<'a>,
         /// Strand frame to world.
         frame: Mat3,
-        hit: StrandHit,
-        strands: &'a Strands,
+        departure: Departure,
     },
     Matte {
         color: Rgb,
@@ -52,11 +51,11 @@ impl<'a> Scatter<'a> {
                 let wo = frame.transpose() * -ray.dir;
                 // Exactly in the half plane y = 0 that models expect.
                 let wo = Vec3::new(wo.x, 0.0, wo.z);
-                let azimuth = azimuth_of(frame.x_axis, hit.side, hit.tangent);
+                let azimuth = || azimuth_of(frame.x_axis, hit.side, hit.tangent);
                 let material = &scene.materials[hit.class as usize];
                 let place = Place {
                     across: if material.is_near_field() {
-                        offset_across(&scene.strands, hit, ray)
+                        hit.across(ray)
                     } else {
                         0.0
                     },
@@ -67,8 +66,7 @@ impl<'a> Scatter<'a> {
                 let kind = Kind::Strand {
                     bsdf: material.at(place, wo, azimuth, u),
                     frame,
-                    hit: *hit,
-                    strands: &scene.strands,
+                    departure: hit.departure(),
                 };
                 (hit.t, kind)
             }
@@ -145,12 +143,12 @@ impl<'a> Scatter<'a> {
     /// A ray from here, and the strand it has to leave.
     pub(super) fn leave(&self, dir: Vec3) -> (Ray, Option<Leaving>) {
         match &self.kind {
-            Kind::Strand { hit, strands, .. } => {
+            Kind::Strand { departure, .. } => {
                 let ray = Ray {
                     origin: self.position,
                     dir,
                 };
-                (ray, Some(strands.leave(hit, dir)))
+                (ray, Some(departure.along(dir)))
             }
             Kind::Matte { facing, .. } => {
                 // A few rounding steps of the position, at least a fifth of a micrometer.
@@ -182,16 +180,6 @@ impl<'a> Scatter<'a> {
             Kind::Matte { frame, .. } => frame.z_axis,
         }
     }
-}
-
-/// Where a ray meets a strand across its width, -1..1 in radii, positive toward `tangent x viewer`.
-fn offset_across(strands: &Strands, hit: &StrandHit, ray: &Ray) -> f32 {
-    let segment = strands.segment(hit);
-    let along = segment.nearest(ray.origin, ray.dir);
-    let radius = segment.root.w + along * (segment.tip.w - segment.root.w);
-    let axis = segment.tip.xyz() - segment.root.xyz();
-    let side = axis.cross(-ray.dir).normalize_or_zero();
-    ((ray.origin - segment.root.xyz()).dot(side) / radius.max(f32::MIN_POSITIVE)).clamp(-1.0, 1.0)
 }
 
 /// Azimuth of a direction around a tangent, radians from `side`; 0 where there is no side.

@@ -38,7 +38,7 @@ const fn matrix(dim: usize) -> [u32; 32] {
     m
 }
 
-/// For each byte of an index and each value of it the sum of its columns.
+/// For each byte of an index and each value of it the sum of its columns, bits reversed.
 const fn sums(dim: usize) -> [[u32; 256]; 4] {
     let m = matrix(dim);
     let mut sums = [[0; 256]; 4];
@@ -47,7 +47,8 @@ const fn sums(dim: usize) -> [[u32; 256]; 4] {
         let mut value = 1usize;
         while value < 256 {
             let lowest = value.trailing_zeros() as usize;
-            sums[byte][value] = sums[byte][value & (value - 1)] ^ m[8 * byte + lowest];
+            sums[byte][value] =
+                sums[byte][value & (value - 1)] ^ m[8 * byte + lowest].reverse_bits();
             value += 1;
         }
         byte += 1;
@@ -57,10 +58,11 @@ const fn sums(dim: usize) -> [[u32; 256]; 4] {
 
 static SUMS: [[[u32; 256]; 4]; 3] = [sums(1), sums(2), sums(3)];
 
+/// A number of the sequence, bits reversed, as scrambling wants it.
 #[inline(always)]
-fn sobol(index: u32, dim: usize) -> u32 {
+fn reversed_sobol(index: u32, dim: usize) -> u32 {
     if dim == 0 {
-        return index.reverse_bits();
+        return index;
     }
     let [a, b, c, d] = index.to_le_bytes().map(usize::from);
     let sums = &SUMS[dim - 1];
@@ -105,7 +107,7 @@ impl Sobol {
         let mut out = [0.0; 4];
         for (dim, value) in out.iter_mut().enumerate() {
             let seed = hash64(self.key ^ (dim as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-            let bits = scramble(sobol(index, dim), seed as u32);
+            let bits = scramble_reversed(reversed_sobol(index, dim), seed as u32).reverse_bits();
             *value = (bits >> 8) as f32 * (1.0 / 16_777_216.0);
         }
         out
@@ -139,7 +141,7 @@ mod tests {
                 let index = i.wrapping_mul(0x9e37_79b9);
                 let bits = (0..32).filter(|b| index >> b & 1 == 1);
                 let sum = bits.fold(0, |x, b| x ^ matrix(dim)[b]);
-                assert_eq!(sobol(index, dim), sum);
+                assert_eq!(reversed_sobol(index, dim).reverse_bits(), sum);
             }
         }
     }

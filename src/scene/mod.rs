@@ -26,7 +26,7 @@ pub use ground::Ground;
 pub use lamps::{Emitter, EmitterShape, Lamp, LampChoice, LampSample, LampShape, MOST_LAMPS};
 pub use outlook::{Look, Outlook, Sight};
 pub use ribbon::Segment;
-pub use strands::{Leaving, StrandHit, Strands};
+pub use strands::{Departure, Leaving, StrandHit, Strands};
 pub use surface::{Surface, SurfaceHit};
 
 use crate::blame::Blame;

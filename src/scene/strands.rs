@@ -19,8 +19,13 @@ pub(super) const UNITS_PER_METER: f32 = 1000.0;
 pub struct StrandHit {
     /// Distance along the ray, millimeters.
     pub t: f32,
-    /// The segment, which scattered rays have to leave.
     found: Found,
+    /// The segment as rays meet it, which scattered rays have to leave.
+    segment: Segment,
+    /// Where along the segment, 0..1.
+    along: f32,
+    /// Runs of the strand from the first to before the second.
+    runs: [u32; 2],
     /// Index of the strand in the groom.
     pub strand: u32,
     /// Hair class of the strand.
@@ -45,6 +50,39 @@ impl Leaving {
     /// Distance along the ray within which the strand that it leaves is not there, millimeters.
     pub fn clear(&self) -> f32 {
         self.0.clear
+    }
+}
+
+/// What shading has to know of a strand, together.
+#[derive(Clone, Copy, Debug, Default)]
+struct Span {
+    first_run: u32,
+    length_mm: f32,
+}
+
+/// A place on a strand that rays leave.
+#[derive(Clone, Copy, Debug)]
+pub struct Departure {
+    /// Unit, along the segment; zero if it has no length.
+    axis: Vec3,
+    width: f32,
+    runs: [u32; 2],
+}
+
+impl Departure {
+    /// The start of a ray along unit `dir`.
+    ///
+    /// In a far-field model light enters and leaves at one point, inside the ribbon. A ray at angle
+    /// a to the tangent is two half widths away from a straight strand after `width / sin a`, and
+    /// cannot meet it beyond; a bent strand may be met again farther on, as it should.
+    #[inline]
+    pub fn along(&self, dir: Vec3) -> Leaving {
+        let [first, end] = self.runs;
+        Leaving(Ignored {
+            first,
+            end,
+            clear: self.width / self.axis.cross(dir).length().max(1e-6),
+        })
     }
 }
 
@@ -84,12 +122,11 @@ const AT_ONCE: usize = 1 << 16;
 pub struct Strands {
     /// First joint of each strand, and their number.
     first_joint: Vec<u32>,
-    /// First run of each strand, and their number.
-    first_run: Vec<u32>,
+    /// For each strand, and at the end the number of runs.
+    spans: Vec<Span>,
     /// For each run.
     courses: Table<Course>,
     /// For each strand.
-    length_mm: Vec<f32>,
     strands: Vec<Strand>,
     /// Major axis of the section at each joint; empty if nobody asks for it.
     sides: Vec<Vec3>,
@@ -105,9 +142,13 @@ impl Strands {
     pub fn build(groom: &Groom) -> Result<Self, SceneError> {
         let count = groom.strands();
         let all = Joints::cut(groom)?;
-        let (mut first_joint, mut first_run, mut runs) = (vec![0], vec![0], Vec::new());
+        let (mut first_joint, mut spans, mut runs) = (vec![0], Vec::new(), Vec::new());
         let mut joint = 0;
-        for &count in &all.count {
+        for (&count, &length_mm) in all.count.iter().zip(&all.length_mm) {
+            spans.push(Span {
+                first_run: runs.len() as u32,
+                length_mm,
+            });
             for first in (0..count.saturating_sub(1)).step_by(2) {
                 runs.push(Run {
                     joint: joint + first,
@@ -117,8 +158,11 @@ impl Strands {
             }
             joint += count;
             first_joint.push(joint);
-            first_run.push(runs.len() as u32);
         }
+        spans.push(Span {
+            first_run: runs.len() as u32,
+            length_mm: 0.0,
+        });
         let copies = copies(&all.joints, &runs);
         let tree = Tree::build(&all.joints, &runs, &copies);
         let copied: usize = copies.iter().map(|&(r, _)| segments_of(&runs, r)).sum();
@@ -145,9 +189,8 @@ impl Strands {
         };
         Ok(Self {
             first_joint,
-            first_run,
+            spans,
             courses,
-            length_mm: all.length_mm,
             strands: (0..count).map(strand).collect(),
             sides: Vec::new(),
             tree,
@@ -220,8 +263,8 @@ impl Strands {
 
     /// A run that a joint of a strand, counted from the root, belongs to, and the joint's number there.
     fn run_of(&self, strand: u32, joint: u32) -> (u32, usize) {
-        let first = self.first_run[strand as usize];
-        let last = self.first_run[strand as usize + 1] - 1;
+        let first = self.spans[strand as usize].first_run;
+        let last = self.spans[strand as usize + 1].first_run - 1;
         let run = (first + joint / 2).min(last);
         (run, (joint - 2 * (run - first)) as usize)
     }
@@ -229,14 +272,9 @@ impl Strands {
     /// The segment of a strand that starts at a joint, as rays meet it.
     #[cfg(test)]
     pub(super) fn piece(&self, strand: u32, joint: u32) -> Segment {
-        let run = self.first_run[strand as usize] + joint / 2;
+        let run = self.spans[strand as usize].first_run + joint / 2;
         let [root, tip] = [0, 1].map(|k| self.tree.joint(run, joint as usize % 2 + k));
         Segment { root, tip }
-    }
-
-    /// The segment that was met.
-    pub fn segment(&self, hit: &StrandHit) -> Segment {
-        self.tree.segment(&hit.found)
     }
 
     /// Where among [`Strands::joints`] the segment begins that was met.
@@ -246,7 +284,7 @@ impl Strands {
 
     fn joint_index(&self, found: &Found, strand: u32) -> usize {
         let strand = strand as usize;
-        let local = 2 * (found.run - self.first_run[strand]) + found.half;
+        let local = 2 * (found.run - self.spans[strand].first_run) + found.half;
         (self.first_joint[strand] + local) as usize
     }
 
@@ -277,7 +315,8 @@ impl Strands {
 
     fn describe(&self, found: &Found, ray: &Ray) -> StrandHit {
         let course = &self.courses[found.run as usize];
-        let along = self.tree.segment(found).nearest(ray.origin, ray.dir);
+        let segment = self.tree.segment(found);
+        let along = segment.nearest(ray.origin, ray.dir);
         let half = found.half as usize;
         let [from, to] = [half, half + 1].map(|k| f32::from(course.at[k]) / AT_STEPS);
         let at = from + along * (to - from);
@@ -288,6 +327,7 @@ impl Strands {
             class,
             coat,
         } = course.place;
+        let [span, next] = [0, 1].map(|k| self.spans[strand as usize + k]);
         let side = if self.sides.is_empty() {
             Vec3::ZERO
         } else {
@@ -300,32 +340,37 @@ impl Strands {
         StrandHit {
             t: found.t,
             found: *found,
+            segment,
+            along,
+            runs: [span.first_run, next.first_run],
             strand,
             class,
             coat,
             at,
-            tip_mm: (1.0 - at) * self.length_mm[strand as usize],
+            tip_mm: (1.0 - at) * span.length_mm,
             tangent,
             side,
         }
     }
+}
 
-    /// The start of a ray that leaves a strand along unit `dir`.
-    ///
-    /// In a far-field model light enters and leaves at one point, inside the ribbon. A ray at angle
-    /// a to the tangent is two half widths away from a straight strand after `width / sin a`, and
-    /// cannot meet it beyond; a bent strand may be met again farther on, as it should.
-    pub fn leave(&self, hit: &StrandHit, dir: Vec3) -> Leaving {
-        let strand = hit.strand as usize;
-        let Segment { root, tip } = self.segment(hit);
-        let width = 2.0 * root.w.max(tip.w);
-        let axis = (tip - root).xyz();
-        let sin = (axis.cross(dir).length() / axis.length()).max(1e-6);
-        Leaving(Ignored {
-            first: self.first_run[strand],
-            end: self.first_run[strand + 1],
-            clear: width / sin,
-        })
+impl StrandHit {
+    /// How scattered rays leave the strand.
+    pub fn departure(&self) -> Departure {
+        let Segment { root, tip } = self.segment;
+        Departure {
+            axis: (tip - root).xyz().normalize_or_zero(),
+            width: 2.0 * root.w.max(tip.w),
+            runs: self.runs,
+        }
+    }
+
+    /// Where `ray` met the strand across its width, -1..1 in radii, positive toward `tangent x viewer`.
+    pub fn across(&self, ray: &Ray) -> f32 {
+        let Segment { root, tip } = self.segment;
+        let radius = root.w + self.along * (tip.w - root.w);
+        let side = (tip - root).xyz().cross(-ray.dir).normalize_or_zero();
+        ((ray.origin - root.xyz()).dot(side) / radius.max(f32::MIN_POSITIVE)).clamp(-1.0, 1.0)
     }
 }
 

@@ -131,7 +131,7 @@ fn a_ray_never_meets_the_straight_strand_it_leaves() {
         let origin = ray.origin + hit.t * ray.dir;
         let out = unit(&mut rng);
         let next = Ray { origin, dir: out };
-        let leaving = strands.leave(&hit, out);
+        let leaving = hit.departure().along(out);
         assert!(
             strands
                 .closest(&next, f32::INFINITY, Some(leaving))

@@ -14,6 +14,9 @@ pub(super) struct Bins {
     /// Cells with light by bins, and running shares of their bin's light.
     cells: Vec<u32>,
     running: Vec<f32>,
+    /// For as many numbers in `[0, 1)` as a bin has cells, evenly spaced, the place of the cell that each chooses, less one so that
+    /// rounding does no harm.
+    guide: Vec<u32>,
     /// First of `cells` of each bin, and their number.
     first: Vec<u32>,
 }
@@ -124,6 +127,7 @@ impl Bins {
                 .collect(),
             cells: Vec::new(),
             running: Vec::new(),
+            guide: Vec::new(),
             first: vec![0],
         };
         for (bin, &(rectangle, all)) in bins.iter().enumerate() {
@@ -136,6 +140,11 @@ impl Bins {
                     out.running.push((sum / all) as f32);
                 }
             }
+            let running = &out.running[out.guide.len()..];
+            out.guide.extend((0..running.len()).map(|i| {
+                let u = i as f32 / running.len() as f32;
+                running.partition_point(|&sum| sum <= u).saturating_sub(1) as u32
+            }));
             out.first.push(out.cells.len() as u32);
         }
         out
@@ -157,9 +166,12 @@ impl Bins {
     pub(super) fn cell(&self, bin: usize, u: f32) -> (usize, f32) {
         let range = self.first[bin] as usize..self.first[bin + 1] as usize;
         let running = &self.running[range.clone()];
-        let i = running
-            .partition_point(|&sum| sum <= u)
-            .min(running.len() - 1);
+        let last = running.len() - 1;
+        let near = ((u * running.len() as f32) as usize).min(last);
+        let mut i = self.guide[range.start + near] as usize;
+        while i < last && running[i] <= u {
+            i += 1;
+        }
         let low = if i == 0 { 0.0 } else { running[i - 1] };
         let rest = (u - low) / (running[i] - low).max(f32::MIN_POSITIVE);
         (

@@ -1,9 +1,10 @@
 //! Environments that need no file.
 
-use super::{Environment, texel_direction};
+use super::Environment;
 use crate::color::Rgb;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
 
 /// A lamp with soft edges in a studio.
 struct Panel {
@@ -62,7 +63,7 @@ impl Environment {
 
     /// A photo studio seen from a camera on the +Z side; turn it along with the camera.
     pub fn studio() -> Self {
-        raster(1024, 512, studio_radiance)
+        raster(1024, 512, studio_radiance())
     }
 }
 
@@ -73,16 +74,20 @@ pub(super) fn raster(
     radiance: impl Fn(Vec3) -> Rgb + Sync,
 ) -> Environment {
     const GRID: usize = 3;
+    let turns = |count: usize, whole: f64, from: f64| -> Vec<(f64, f64)> {
+        let at = |i: usize| ((i as f64 + 0.5) / count as f64 + from) * whole;
+        (0..count).map(|i| at(i).sin_cos()).collect()
+    };
+    let across = turns(width * GRID, TAU, -0.5);
+    let down = turns(height * GRID, PI, 0.0);
     let texels = (0..width * height)
         .into_par_iter()
         .map(|i| {
             let mut sum = Rgb::ZERO;
-            for k in 0..GRID * GRID {
-                let (dx, dy) = (k % GRID, k / GRID);
-                let x = ((i % width) * GRID + dx) as f64 + 0.5;
-                let y = ((i / width) * GRID + dy) as f64 + 0.5;
-                let d = texel_direction(x / (width * GRID) as f64, y / (height * GRID) as f64);
-                sum += radiance(d);
+            for (sin_t, cos_t) in &down[i / width * GRID..][..GRID] {
+                for (sin_p, cos_p) in &across[i % width * GRID..][..GRID] {
+                    sum += radiance(DVec3::new(sin_t * sin_p, *cos_t, -sin_t * cos_p).as_vec3());
+                }
             }
             sum / (GRID * GRID) as f32
         })
@@ -90,32 +95,61 @@ pub(super) fn raster(
     Environment::from_texels(width, height, texels)
 }
 
-fn studio_radiance(dir: Vec3) -> Rgb {
-    // Walls: a dim gray room, lighter above than below.
-    let wall = Rgb::new(0.16, 0.165, 0.175).lerp(Rgb::splat(0.05), 0.5 - 0.5 * dir.y);
-    STUDIO.iter().fold(wall, |sum, panel| {
-        sum + panel.radiance * panel_coverage(panel, dir)
-    })
+/// Light from a direction in the studio.
+fn studio_radiance() -> impl Fn(Vec3) -> Rgb + Sync {
+    let panels = STUDIO.map(|panel| Hung::new(&panel));
+    move |dir| {
+        // Walls: a dim gray room, lighter above than below.
+        let wall = Rgb::new(0.16, 0.165, 0.175).lerp(Rgb::splat(0.05), 0.5 - 0.5 * dir.y);
+        panels.iter().fold(wall, |sum, panel| {
+            sum + panel.radiance * panel.coverage(dir)
+        })
+    }
 }
 
-/// 1 inside a panel, 0 outside, smooth between.
-fn panel_coverage(panel: &Panel, dir: Vec3) -> f32 {
-    let [azimuth, elevation] = panel.toward.map(f32::to_radians);
-    let center = Vec3::new(
-        azimuth.sin() * elevation.cos(),
-        elevation.sin(),
-        azimuth.cos() * elevation.cos(),
-    );
-    let right = Vec3::Y.cross(center).normalize_or(Vec3::X);
-    let up = center.cross(right);
-    let depth = dir.dot(center);
-    if depth <= 0.0 {
-        return 0.0;
+/// A panel with the axes that it is seen along: toward it, to its right and up.
+struct Hung {
+    axes: [Vec3; 3],
+    /// Half width and half height, radians.
+    half: [f32; 2],
+    softness: f32,
+    radiance: Rgb,
+}
+
+impl Hung {
+    fn new(panel: &Panel) -> Self {
+        let [azimuth, elevation] = panel.toward.map(f32::to_radians);
+        let center = Vec3::new(
+            azimuth.sin() * elevation.cos(),
+            elevation.sin(),
+            azimuth.cos() * elevation.cos(),
+        );
+        let right = Vec3::Y.cross(center).normalize_or(Vec3::X);
+        Self {
+            axes: [center, right, center.cross(right)],
+            half: panel.half.map(f32::to_radians),
+            softness: panel.softness,
+            radiance: panel.radiance,
+        }
     }
-    let falloff = |across: f32, half: f32| {
-        let x = (across.atan2(depth).abs() / half.to_radians() - 1.0) / panel.softness;
-        let t = (0.5 - x).clamp(0.0, 1.0);
-        t * t * (3.0 - 2.0 * t)
-    };
-    falloff(dir.dot(right), panel.half[0]) * falloff(dir.dot(up), panel.half[1])
+
+    /// 1 inside the panel, 0 outside, smooth between.
+    fn coverage(&self, dir: Vec3) -> f32 {
+        let [center, right, up] = self.axes;
+        let depth = dir.dot(center);
+        if depth <= 0.0 {
+            return 0.0;
+        }
+        let falloff = |across: f32, half: f32| {
+            let x = (across.atan2(depth).abs() / half - 1.0) / self.softness;
+            let t = (0.5 - x).clamp(0.0, 1.0);
+            t * t * (3.0 - 2.0 * t)
+        };
+        let wide = falloff(dir.dot(right), self.half[0]);
+        // Most of the sphere is beside it.
+        if wide == 0.0 {
+            return 0.0;
+        }
+        wide * falloff(dir.dot(up), self.half[1])
+    }
 }

@@ -17,7 +17,7 @@ pub use file::{EnvironmentError, load};
 pub use sky::Sun;
 
 use crate::color::{Rgb, luminance};
-use crate::math::quick::turns;
+use crate::math::quick::{sin_cos_of_turns, turns};
 use crate::pages::Table;
 use bins::Bins;
 use distribution::{CELL, Distribution, Row};
@@ -275,9 +275,9 @@ impl Environment {
         });
         let [top, bottom] = [self.edges[row.row], self.edges[row.row + 1]];
         let up = top - f64::from(v) * (top - bottom);
-        let azimuth = ((column as f64 + f64::from(s)) / self.width as f64 - 0.5) * TAU;
+        let across = ((column as f64 + f64::from(s)) / self.width as f64 - 0.5) as f32;
         let flat = (1.0 - up * up).max(0.0).sqrt() as f32;
-        let (sin, cos) = (azimuth as f32).sin_cos();
+        let (sin, cos) = sin_cos_of_turns(across);
         let d = Vec3::new(flat * sin, up as f32, -flat * cos);
         let [c, s] = self.turn;
         let dir = Vec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
@@ -297,13 +297,6 @@ impl Environment {
     }
 }
 
-/// Direction of the middle of a texel, before turning.
-fn texel_direction(x: f64, y: f64) -> Vec3 {
-    let (sin_p, cos_p) = ((x - 0.5) * TAU).sin_cos();
-    let (sin_t, cos_t) = (y * PI).sin_cos();
-    glam::DVec3::new(sin_t * sin_p, cos_t, -sin_t * cos_p).as_vec3()
-}
-
 /// Height (sine of elevation) of the upper edge of a row.
 fn edge(row: usize, height: usize) -> f64 {
     (PI * row as f64 / height as f64).cos()
@@ -313,6 +306,13 @@ fn edge(row: usize, height: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::sampling::Sobol;
+
+    /// Direction of the middle of a texel, before turning.
+    fn texel_direction(x: f64, y: f64) -> Vec3 {
+        let (sin_p, cos_p) = ((x - 0.5) * TAU).sin_cos();
+        let (sin_t, cos_t) = (y * PI).sin_cos();
+        glam::DVec3::new(sin_t * sin_p, cos_t, -sin_t * cos_p).as_vec3()
+    }
 
     /// Height of a row's band: its solid angle over 2 pi.
     fn band(row: usize, height: usize) -> f64 {

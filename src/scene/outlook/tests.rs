@@ -3,7 +3,7 @@ use crate::bsdf::HairMaterial;
 use crate::color::Rgb;
 use crate::groom::Groom;
 use crate::sampling::Rng;
-use crate::scene::{Backdrop, Ray, Scene, SceneParts, View};
+use crate::scene::{Backdrop, Ray, Scene, SceneParts, StrandHit, View};
 use glam::Vec2;
 
 /// Straight strands that go up from a square of 20 mm, random places and lengths.
@@ -188,13 +188,13 @@ fn glow_is_what_walks_bring() {
 
 /// Light that a walk from a place brings, over the mean of all light, where strands send on what `glow` thinks they do.
 fn walk(scene: &Scene, mut origin: Vec3, rng: &mut Rng) -> f32 {
-    let (mut left, mut leaving) = (1.0, None);
+    let (mut left, mut leaving): (f32, Option<StrandHit>) = (1.0, None);
     while left > 1e-3 {
         let height = 1.0 - 2.0 * rng.uniform_f32();
         let (sin, cos) = (std::f32::consts::TAU * rng.uniform_f32()).sin_cos();
         let flat = (1.0 - height * height).sqrt();
         let dir = Vec3::new(flat * cos, height, flat * sin);
-        let from = leaving.as_ref().map(|from| scene.strands.leave(from, dir));
+        let from = leaving.as_ref().map(|from| from.departure().along(dir));
         let Some(hit) = scene
             .strands
             .closest(&Ray { origin, dir }, f32::INFINITY, from)
