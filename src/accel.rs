@@ -5,6 +5,8 @@
 //! 1e-4 units: a tenth of a micrometer of skin, well below the width of a hair. In meters it would be a
 //! tenth of a millimeter, and light that leaves the skin would pass through the folds beside it.
 
+pub(crate) mod lanes;
+
 use crate::sampling::hash64;
 use glam::{UVec2, Vec3, Vec3A};
 use obvhs::bvh2::builder::build_bvh2_from_tris;

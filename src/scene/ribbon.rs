@@ -5,7 +5,7 @@
 //! away, so nothing but the distance between ray and axis matters; a round tube would ask for a
 //! quadratic and give the same picture.
 
-use super::tree::Numbers;
+use crate::accel::lanes::Numbers;
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
 /// Two ends of a segment, scene units (millimeters): xyz the axis, w half the width.

@@ -6,13 +6,10 @@
 
 mod bounds;
 mod build;
-mod lanes;
 mod leaf;
 mod line;
 mod node;
 mod search;
-
-pub(super) use lanes::Numbers;
 
 use super::ribbon::Segment;
 use crate::accel::Ray;

@@ -58,25 +58,24 @@ impl Triangles {
                 // All crossings up to the next outward one: as a rule there is none before it.
                 some.clear();
                 let mut end = stretch.length;
-                self.tree
-                    .visit(stretch.origin, stretch.dir, end, kinds, |triangle| {
-                        let Meeting { t, enters } = shear.meet(&triangle.corners())?;
-                        let label = triangle.label();
-                        let counts = label.bound == bound || (enters && label.sides[0] == region);
-                        if !(t >= after && t < end) || from == Some(label.source) || !counts {
-                            return None;
-                        }
-                        some.push(Crossing {
-                            t,
-                            triangle,
-                            enters,
-                        });
-                        if enters {
-                            return None;
-                        }
-                        end = end.min(t + SAME);
-                        Some(end)
+                self.tree.visit(&shear, end, kinds, |triangle| {
+                    let Meeting { t, enters } = shear.meet(&triangle.corners())?;
+                    let label = triangle.label();
+                    let counts = label.bound == bound || (enters && label.sides[0] == region);
+                    if !(t >= after && t < end) || from == Some(label.source) || !counts {
+                        return None;
+                    }
+                    some.push(Crossing {
+                        t,
+                        triangle,
+                        enters,
                     });
+                    if enters {
+                        return None;
+                    }
+                    end = end.min(t + SAME);
+                    Some(end)
+                });
                 some.retain(|c| c.t < end);
                 self.tidy(&mut some);
                 for &c in &some {
@@ -168,7 +167,7 @@ impl Triangles {
         } = stretch;
         let shear = Shear::new(origin, dir);
         let mut all: Vec<Crossing<'_>> = Vec::new();
-        (self.tree).visit(origin, dir, length, Kinds::ALL, |triangle| {
+        (self.tree).visit(&shear, length, Kinds::ALL, |triangle| {
             let Meeting { t, enters } = shear.meet(&triangle.corners())?;
             if t >= 0.0 && t < length && counts(triangle) {
                 all.push(Crossing {

@@ -192,7 +192,7 @@ impl Triangles {
                 region,
                 from,
             };
-            let (t, triangle, enters) = self.first_in_tile(origin, dir, stretch.beyond, &search)?;
+            let (t, triangle, enters) = self.first_in_tile(stretch.beyond, &search)?;
             Some(Found {
                 t: stretch.before + t,
                 triangle,
@@ -212,9 +212,16 @@ impl Triangles {
         mut visit: impl FnMut(&Stretch, Option<u32>) -> Option<T>,
     ) -> Option<T> {
         let period = self.screw.period;
-        let (begin, end) = within_unit_cylinder(origin, dir)?;
-        let mut before = begin.max(0.0);
-        if before >= end {
+        // A ray that starts within the cylinder about the mesh meets nothing behind that: where it leaves it, is asked
+        // for when the first tile has nothing.
+        let (mut before, mut end) = match is_within_cylinder(origin) {
+            true => (0.0, None),
+            false => {
+                let (begin, end) = within_cylinder(origin, dir)?;
+                (begin.max(0.0), Some(end))
+            }
+        };
+        if end.is_some_and(|end| before >= end) {
             return None;
         }
         // Where it starts decides the tile; beyond that only the direction does.
@@ -228,12 +235,13 @@ impl Triangles {
                 dz if dz < 0.0 => (-to - local.z) / dz,
                 _ => f64::INFINITY,
             };
+            let most = end.map_or(f64::INFINITY, |end| end - before);
             let stretch = Stretch {
                 origin: self.screw.turn(local, -image),
                 dir: self.screw.turn(dir, -image),
                 before,
-                length: way(0.0).max(0.0).min(end - before),
-                beyond: way(OVERLAP).min(end - before),
+                length: way(0.0).max(0.0).min(most),
+                beyond: way(OVERLAP).min(most),
                 image,
             };
             let found = visit(&stretch, from.filter(|_| before <= 0.5 * period));
@@ -241,7 +249,8 @@ impl Triangles {
                 return found;
             }
             before += way(0.0).max(0.0);
-            if before >= end {
+            let leaves = || within_cylinder(origin, dir).map_or(0.0, |(_, end)| end);
+            if before >= *end.get_or_insert_with(leaves) {
                 return None;
             }
             image += dir.z.signum();
@@ -249,28 +258,20 @@ impl Triangles {
         None
     }
 
-    fn first_in_tile(
-        &self,
-        origin: DVec3,
-        dir: DVec3,
-        limit: f64,
-        search: &Search,
-    ) -> Option<(f64, Candidate<'_>, bool)> {
+    fn first_in_tile(&self, limit: f64, search: &Search) -> Option<(f64, Candidate<'_>, bool)> {
         let mut best: Option<(f64, Candidate<'_>, bool)> = None;
         let kinds = Kinds::around(search.region);
         // The tree sees single precision; what is nearest is decided here.
-        self.tree.visit(origin, dir, limit, kinds, |triangle| {
-            let source = triangle.label().source;
-            if search.from == Some(source) {
-                return None;
-            }
+        self.tree.visit(&search.shear, limit, kinds, |triangle| {
             let Meeting { t, enters } = search.shear.meet(&triangle.corners())?;
             if !(t >= 0.0 && t <= limit && triangle.is_of(kinds, enters)) {
                 return None;
             }
+            // Labels come last: they are read where something is met.
+            let source = triangle.label().source;
             let is_nearer =
                 best.is_none_or(|(b, other, _)| t < b || (t == b && source < other.label().source));
-            if !is_nearer {
+            if !is_nearer || search.from == Some(source) {
                 return None;
             }
             best = Some((t, triangle, enters));
@@ -280,11 +281,17 @@ impl Triangles {
     }
 }
 
-/// Where a ray is within a cylinder a little wider than the mesh.
-fn within_unit_cylinder(origin: DVec3, dir: DVec3) -> Option<(f64, f64)> {
-    const SQUARE: f64 = 1.0 + 1e-5;
+/// Square of the radius of a cylinder a little wider than the mesh.
+const CYLINDER: f64 = 1.0 + 1e-5;
+
+fn is_within_cylinder(point: DVec3) -> bool {
+    point.truncate().length_squared() - CYLINDER < 0.0
+}
+
+/// Where a ray is within the cylinder about the mesh.
+fn within_cylinder(origin: DVec3, dir: DVec3) -> Option<(f64, f64)> {
     let (o, d): (DVec2, DVec2) = (origin.truncate(), dir.truncate());
-    let (a, b, c) = (d.length_squared(), o.dot(d), o.length_squared() - SQUARE);
+    let (a, b, c) = (d.length_squared(), o.dot(d), o.length_squared() - CYLINDER);
     if a < 1e-30 {
         return (c < 0.0).then_some((0.0, f64::INFINITY));
     }

@@ -6,9 +6,12 @@ use glam::DVec3;
 
 /// A ray made an axis.
 pub(super) struct Shear {
-    origin: DVec3,
-    axes: [usize; 3],
-    shear: [f64; 3],
+    pub(super) origin: DVec3,
+    pub(super) dir: DVec3,
+    /// Two axes across the ray and the one along it.
+    pub(super) axes: [usize; 3],
+    /// How far the ray goes across for each radius along the third axis, and along itself.
+    pub(super) shear: [f64; 3],
 }
 
 /// Where a ray meets a triangle.
@@ -22,18 +25,15 @@ pub(super) struct Meeting {
 impl Shear {
     pub(super) fn new(origin: DVec3, dir: DVec3) -> Self {
         let a = dir.abs();
-        let z = if a.x >= a.y && a.x >= a.z {
-            0
-        } else if a.y >= a.z {
-            1
-        } else {
-            2
-        };
+        // Directions are random: no branch would be guessed.
+        let of_two = if a.y >= a.z { 1 } else { 2 };
+        let z = if a.x >= a.y.max(a.z) { 0 } else { of_two };
         let (x, y) = ((z + 1) % 3, (z + 2) % 3);
         // Exchanging two axes keeps the winding for rays along negative ones.
         let (x, y) = if dir[z] < 0.0 { (y, x) } else { (x, y) };
         Self {
             origin,
+            dir,
             axes: [x, y, z],
             shear: [dir[x] / dir[z], dir[y] / dir[z], 1.0 / dir[z]],
         }

@@ -1,33 +1,32 @@
-//! The triangles of a tile in a tree: nodes of eight boxes, leaves of four triangles. All of a node, and of a
-//! leaf, is tested at once in single precision, with the room that its rounding needs: what a ray meets is
+//! The triangles of a tile in a tree: nodes of sixteen boxes, leaves of up to eight triangles with eight corners. All of a
+//! node, and of a leaf, is tested at once in single precision, with the room that its rounding needs: what a ray meets is
 //! shown to the caller, who decides in double precision, and little else is.
 
 mod layout;
 mod leaf;
 mod node;
+mod ray;
+mod search;
+#[cfg(test)]
+mod tests;
 
 use super::OVERLAP;
+use super::shear::Shear;
 use super::solid::Bound;
 use crate::accel::{AccelError, Effort, binary_tree};
 use crate::fiber::{Part, Region};
 use crate::pages::Table;
-use glam::{DVec3, Vec3, Vec4};
-use leaf::{Leaf, SIZE};
+use glam::{DVec3, Vec3};
+use leaf::{Leaf, SIZE, Steps};
 use node::Node;
-use std::cell::RefCell;
+use ray::Line;
+use search::Query;
 
 /// Room for single precision, relative to the longest way of a ray: half a rounding for each of up to
 /// 32 operations in a row.
 const ROUNDINGS: f32 = 16.0 * f32::EPSILON;
 /// Marks children that are leaves.
 const LEAF: u32 = 1 << 31;
-/// Boxes set aside by a ray; each level leaves seven at most. Deeper trees get a place of their own.
-const STACK: usize = 256;
-
-thread_local! {
-    /// Boxes set aside and where the ray enters them: kept, as clearing it takes as long as a node.
-    static ASIDE: RefCell<[(u32, f32); STACK]> = const { RefCell::new([(0, 0.0); STACK]) };
-}
 
 /// Number of kinds of triangles that can be asked for.
 const KINDS: usize = Region::COUNT + 3;
@@ -56,8 +55,18 @@ impl Kinds {
 
     /// Of the marks for each kind those for these.
     #[inline(always)]
-    fn held(self, holds: &[u8; KINDS]) -> u8 {
-        holds[self.0[0]] | holds[self.0[1]]
+    fn of_node(self, holds: &[[u16; 2]; KINDS - 1], count: u8) -> [u16; 2] {
+        let all = ((1u32 << count) - 1) as u16;
+        let of = |kind: usize| *holds.get(kind).unwrap_or(&[all; 2]);
+        let (a, b) = (of(self.0[0]), of(self.0[1]));
+        [a[0] | b[0], a[1] | b[1]]
+    }
+
+    /// Of the marks for each kind those for these.
+    #[inline(always)]
+    fn of_leaf(self, holds: &[[u8; 2]; KINDS]) -> [u8; 2] {
+        let (a, b) = (holds[self.0[0]], holds[self.0[1]]);
+        [a[0] | b[0], a[1] | b[1]]
     }
 }
 
@@ -90,13 +99,20 @@ impl Label {
     };
 }
 
+/// What is known of the triangles of a leaf: read when one of them is met.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+struct Labels([Label; SIZE]);
+
 /// A tree over triangles that the caller keeps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
     nodes: Table<Node>,
     leaves: Table<Leaf>,
-    /// Places for boxes set aside that the deepest way needs.
-    stack: usize,
+    /// By leaf.
+    labels: Table<Labels>,
+    /// Nodes one below the other, at most.
+    depth: usize,
     /// Corners are multiples of this, in radii.
     step: f64,
     /// Room around what is single precision, in radii.
@@ -116,14 +132,20 @@ impl Tree {
     ) -> Result<(Self, Vec<u32>), AccelError> {
         let single: Vec<[Vec3; 3]> = corners.iter().map(|t| t.map(|p| p.as_vec3())).collect();
         let binary = binary_tree(&single, Effort::Best)?;
-        // From a little outside of the fiber through all of a tile.
-        let reach = (2.5 + period + 4.0 * OVERLAP) as f32;
+        // From a little outside of the fiber through all of a tile, and to corners beyond it.
+        let corner = |most: f64, p: &DVec3| most.max(p.abs().max_element());
+        let corners_reach = corners.iter().flatten().fold(0.0, corner);
+        let reach = (2.5 + period + 4.0 * OVERLAP).max(corners_reach) as f32;
         let room = ROUNDINGS * reach;
-        let draft = layout::lay_out(&binary, corners, step, room);
+        let steps: Vec<[Steps; 3]> = (corners.iter())
+            .map(|t| t.map(|p| (p / step).to_array().map(|x| x as i32)))
+            .collect();
+        let draft = layout::lay_out(&binary, &steps, room);
         let tree = Self {
+            labels: Table::new(vec![Labels([Label::NONE; SIZE]); draft.leaves.len()]),
             nodes: Table::new(draft.nodes),
             leaves: Table::new(draft.leaves),
-            stack: draft.stack,
+            depth: draft.depth,
             step,
             room,
         };
@@ -144,44 +166,44 @@ impl Tree {
     /// * `of`: by place.
     pub(super) fn label(&mut self, of: impl Fn(usize) -> Label) {
         for (index, leaf) in self.leaves.entries_mut().iter_mut().enumerate() {
-            let count = leaf.count();
-            leaf.holds = [0; KINDS];
-            for k in 0..count {
+            leaf.holds = [[0; 2]; KINDS];
+            for k in 0..leaf.count() {
                 let label = of(SIZE * index + k);
                 let [outside, inside] = label.sides;
-                leaf.holds[outside as usize] |= 1 << k;
-                leaf.holds[inside as usize] |= 0x10 << k;
-                leaf.holds[kind_of(label.bound)] |= 0x11 << k;
-                leaf.holds[KINDS - 1] |= 0x11 << k;
-                leaf.labels[k] = label;
+                leaf.holds[outside as usize][0] |= 1 << k;
+                leaf.holds[inside as usize][1] |= 1 << k;
+                for kind in [kind_of(label.bound), KINDS - 1] {
+                    leaf.holds[kind] = leaf.holds[kind].map(|holds| holds | 1 << k);
+                }
+                self.labels[index].0[k] = label;
             }
         }
         // Children come after their parents.
         for index in (0..self.nodes.len()).rev() {
-            let mut holds = [0; KINDS];
-            for k in 0..self.nodes[index].count() {
-                let child = self.nodes[index].child(k);
-                let below = match child & LEAF {
-                    0 => &self.nodes[child as usize].holds,
-                    _ => &self.leaves[(child & !LEAF) as usize].holds,
-                };
-                for (holds, below) in holds.iter_mut().zip(below) {
-                    *holds |= u8::from(*below != 0) << k;
+            let node = &self.nodes[index];
+            let held = |k: usize| {
+                let child = node.child(k);
+                let number = (child & !LEAF) as usize;
+                if child & LEAF == 0 {
+                    return self.nodes[number].held();
                 }
-            }
-            self.nodes[index].holds = holds;
+                let leaf = &self.leaves[number];
+                let holds = leaf.holds.map(|holds| holds.map(|holds| holds != 0));
+                (holds, leaf.normals(self.step))
+            };
+            let children: Vec<_> = (0..node.count()).map(held).collect();
+            self.nodes[index].label(&children);
         }
     }
 
     /// Shows the caller all triangles of some kinds that a ray may meet in front of a limit, near ones
-    /// as a rule first, perhaps more than once.
+    /// as a rule first, perhaps more than once, and some that it does not meet.
     ///
     /// * `test`: the new limit if it is to be nearer.
     #[inline(always)]
     pub(super) fn visit<'a>(
         &'a self,
-        origin: DVec3,
-        dir: DVec3,
+        ray: &Shear,
         limit: f64,
         kinds: Kinds,
         test: impl FnMut(Candidate<'a>) -> Option<f64>,
@@ -189,82 +211,13 @@ impl Tree {
         if self.nodes.is_empty() {
             return;
         }
-        let ray = Ray::new(origin.as_vec3(), dir.as_vec3());
-        if self.stack <= STACK {
-            ASIDE.with_borrow_mut(|aside| self.walk(&ray, limit, kinds, aside, test));
-        } else {
-            self.walk(&ray, limit, kinds, &mut vec![(0, 0.0); self.stack], test);
-        }
-    }
-
-    #[inline(always)]
-    fn walk<'a>(
-        &'a self,
-        ray: &Ray,
-        limit: f64,
-        kinds: Kinds,
-        aside: &mut [(u32, f32)],
-        mut test: impl FnMut(Candidate<'a>) -> Option<f64>,
-    ) {
-        let cut = |t: f64| t as f32 * (1.0 + 4.0 * f32::EPSILON) + self.room;
-        let mut limit = cut(limit);
-        let mut height = 0;
-        let mut next = 0;
-        loop {
-            if next & LEAF == 0 {
-                let node = &self.nodes[next as usize];
-                let (mut hit, begin) = node.meets(ray, self.room, limit);
-                hit &= u32::from(kinds.held(&node.holds));
-                if hit != 0 {
-                    let begin: [f32; 8] = {
-                        let [a, b] = begin.map(|b| b.to_array());
-                        [a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]]
-                    };
-                    let first = hit.trailing_zeros() as usize;
-                    hit &= hit - 1;
-                    let mut least = (first, begin[first & 7]);
-                    while hit != 0 {
-                        let k = hit.trailing_zeros() as usize;
-                        hit &= hit - 1;
-                        let mut other = (k, begin[k & 7]);
-                        if other.1 < least.1 {
-                            std::mem::swap(&mut least, &mut other);
-                        }
-                        aside[height] = (node.child(other.0), other.1);
-                        height += 1;
-                    }
-                    next = node.child(least.0);
-                    continue;
-                }
-            } else {
-                let number = (next & !LEAF) as usize;
-                let leaf = &self.leaves[number];
-                let mut met = leaf.meets(ray, self.step as f32, self.room, limit, kinds);
-                while met != 0 {
-                    let k = met.trailing_zeros() as usize;
-                    met &= met - 1;
-                    if let Some(t) = test(Candidate {
-                        leaf,
-                        number,
-                        k: k & 3,
-                        step: self.step,
-                    }) {
-                        limit = cut(t);
-                    }
-                }
-            }
-            loop {
-                if height == 0 {
-                    return;
-                }
-                height -= 1;
-                let (child, begin) = aside[height];
-                if begin <= limit {
-                    next = child;
-                    break;
-                }
-            }
-        }
+        let query = Query {
+            tree: self,
+            line: Line::new(ray, self.step, self.room),
+            limit,
+            kinds,
+        };
+        query.answer(test);
     }
 }
 
@@ -272,8 +225,8 @@ impl Tree {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate<'a> {
     leaf: &'a Leaf,
-    number: usize,
-    k: usize,
+    label: &'a Label,
+    place: usize,
     step: f64,
 }
 
@@ -281,53 +234,25 @@ impl Candidate<'_> {
     /// Its place.
     #[inline(always)]
     pub(super) fn place(self) -> usize {
-        SIZE * self.number + self.k
+        self.place
     }
 
     /// Its label, once it has one.
     #[inline(always)]
     pub(super) fn label(self) -> Label {
-        self.leaf.labels[self.k]
+        *self.label
     }
 
     #[inline(always)]
     pub(super) fn corners(self) -> [DVec3; 3] {
-        self.leaf.corners(self.k, self.step)
+        self.leaf.corners(self.place % SIZE, self.step)
     }
 
     /// Whether it is of some kind, entered or left.
     #[inline(always)]
     pub(super) fn is_of(self, kinds: Kinds, enters: bool) -> bool {
-        let up = if enters { self.k } else { self.k + 4 };
-        kinds.held(&self.leaf.holds) >> up & 1 != 0
-    }
-}
-
-/// A ray in single precision, each number four times.
-struct Ray {
-    origin: [Vec4; 3],
-    dir: [Vec4; 3],
-    inverse: [Vec4; 3],
-    /// Origin times inverse.
-    start: [Vec4; 3],
-    /// Which plane of a box is met last along each axis.
-    down: [usize; 3],
-}
-
-impl Ray {
-    fn new(origin: Vec3, dir: Vec3) -> Self {
-        // So that nothing is infinite, and nothing times zero undefined.
-        let slope = dir
-            .to_array()
-            .map(|d| if d.abs() < 1e-18 { 1e-18 } else { d });
-        let inverse = slope.map(|d| 1.0 / d);
-        let o = origin.to_array();
-        Self {
-            origin: o.map(Vec4::splat),
-            dir: dir.to_array().map(Vec4::splat),
-            inverse: inverse.map(Vec4::splat),
-            start: [0, 1, 2].map(|k| Vec4::splat(o[k] * inverse[k])),
-            down: slope.map(|d| usize::from(d < 0.0)),
-        }
+        let [entered, left] = kinds.of_leaf(&self.leaf.holds);
+        let held = if enters { entered } else { left };
+        held >> (self.place % SIZE) & 1 != 0
     }
 }

@@ -7,8 +7,9 @@
 
 use super::bounds::Bounds;
 use super::leaf::{Leaf, RUNS};
-use super::node::{CHILDREN, Child, Node};
+use super::node::{Child, Node};
 use super::{DEPTH, Run};
+use crate::accel::lanes::CHILDREN;
 use crate::pages::{self, Table};
 use glam::{Mat3, Mat3A, Vec3, Vec3A, Vec4, Vec4Swizzles};
 use rayon::prelude::*;

@@ -2,8 +2,8 @@
 
 use super::super::ribbon::{Seen, Segments};
 use super::Run;
-use super::lanes::{Lanes, Numbers};
 use super::line::Line;
+use crate::accel::lanes::{Lanes, Numbers};
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
 /// Runs of a leaf at most.

@@ -1,11 +1,8 @@
 //! Sixteen boxes with axes of their own.
 
-use super::lanes::{Lanes, Numbers};
 use super::line::Line;
+use crate::accel::lanes::{CHILDREN, Children, Lanes, Numbers};
 use glam::{Mat3, Vec3, Vec4};
-
-/// Children of a node at most.
-pub(super) const CHILDREN: usize = 16;
 
 /// Boxes of children, whose edges lie along the fur in them where it is long in one direction. Planes are counted in
 /// steps from a corner, so that all is in three lines of a cache.
@@ -28,13 +25,6 @@ pub(super) struct Node {
 }
 
 const _: () = assert!(size_of::<Node>() == 192);
-
-/// Children of one kind: their numbers are those of the first and their places together.
-#[derive(Clone, Copy)]
-pub(super) struct Children<'a> {
-    pub(super) first: u32,
-    pub(super) places: &'a [u8; CHILDREN],
-}
 
 /// A child of a node that is to be.
 #[derive(Clone, Copy, Debug)]

@@ -5,14 +5,13 @@
 //! will look at is asked for early; leaves are looked at a step later, when they have arrived; and nothing is decided
 //! by a branch that can be reckoned instead.
 
-use super::lanes::{Aside, Lanes, Plain};
-#[cfg(target_arch = "x86_64")]
-use super::lanes::{Avx2, Avx512};
 use super::leaf::{Leaf, RUNS};
 use super::line::Line;
-use super::node::CHILDREN;
 use super::{DEPTH, Found, Ignored, Tree};
 use crate::accel::Ray;
+use crate::accel::lanes::{Aside, CHILDREN, Lanes, Plain};
+#[cfg(target_arch = "x86_64")]
+use crate::accel::lanes::{Avx2, Avx512, has_avx2, has_avx512};
 use crate::pages::fetch;
 use std::cell::RefCell;
 
@@ -232,27 +231,6 @@ impl<F: Fn(u32)> Query<'_, F> {
         }
         is_nearer
     }
-}
-
-/// Whether the processor has all that [`Query::avx2`] enables.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn has_avx2() -> bool {
-    is_x86_feature_detected!("avx2")
-        && is_x86_feature_detected!("fma")
-        && is_x86_feature_detected!("bmi1")
-        && is_x86_feature_detected!("popcnt")
-        && is_x86_feature_detected!("lzcnt")
-}
-
-/// Whether it has what [`Query::avx512`] enables besides.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn has_avx512() -> bool {
-    is_x86_feature_detected!("avx512f")
-        && is_x86_feature_detected!("avx512bw")
-        && is_x86_feature_detected!("avx512dq")
-        && is_x86_feature_detected!("avx512vl")
 }
 
 /// What was found so far.

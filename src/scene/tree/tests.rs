@@ -1,6 +1,6 @@
-use super::lanes::{Lanes, Plain};
 use super::line::Line;
 use super::*;
+use crate::accel::lanes::{Lanes, Plain};
 use crate::sampling::Rng;
 use glam::{Vec3, Vec4Swizzles};
 

@@ -1,16 +1,19 @@
-//! From a binary tree to nodes of eight and leaves of four.
+//! From a binary tree to nodes of sixteen and leaves of eight.
 //!
 //! What becomes a node, a leaf or an entry of a node above is what costs a ray least (Ylitie, Karras and
-//! Laine 2017, section 3): the least cost of each subtree as one to eight entries, from the bottom up.
+//! Laine 2017, section 3): the least cost of each subtree as one to sixteen entries, from the bottom up.
 
 use super::LEAF;
-use super::leaf::{Leaf, SIZE};
+use super::leaf::{Leaf, SIZE, Steps};
 use super::node::Node;
 use crate::accel::BinaryNode;
-use glam::{DVec3, Vec3};
+use crate::accel::lanes::CHILDREN;
+use glam::Vec3;
 
 /// Entries of a node.
-const ENTRIES: usize = 8;
+const ENTRIES: usize = CHILDREN;
+/// Pieces of triangles up to which it is asked whether they fit into a leaf: slender triangles are there in several.
+const PIECES: usize = 2 * SIZE;
 /// Least room around boxes, in radii.
 const ROOM: f32 = 1e-5;
 /// What a leaf costs over what a node does: it is seldom in a cache.
@@ -22,37 +25,31 @@ pub(super) struct Draft {
     pub(super) leaves: Vec<Leaf>,
     /// For each place of a leaf, in order, the triangle there.
     pub(super) places: Vec<u32>,
-    /// Places for boxes set aside that the deepest way needs.
-    pub(super) stack: usize,
+    /// Nodes one below the other, at most.
+    pub(super) depth: usize,
 }
 
-/// * `step`: that corners are multiples of. * `room`: around boxes at least, in radii.
-pub(super) fn lay_out(
-    binary: &[BinaryNode],
-    corners: &[[DVec3; 3]],
-    step: f64,
-    room: f32,
-) -> Draft {
+/// * `room`: around boxes at least, in radii.
+pub(super) fn lay_out(binary: &[BinaryNode], corners: &[[Steps; 3]], room: f32) -> Draft {
     let mut tree = Draft {
         nodes: Vec::new(),
         leaves: Vec::new(),
         places: Vec::new(),
-        stack: 0,
+        depth: 0,
     };
     let mut layout = Layout {
         binary,
-        plan: plan(binary),
+        plan: plan(binary, corners),
         corners,
-        places: Vec::with_capacity(corners.len() * 5 / 4),
-        step,
+        places: Vec::with_capacity(corners.len() * 2),
         room: room.max(ROOM),
     };
     if !binary.is_empty() {
         tree.nodes.push(Node::EMPTY);
-        // Nodes to be filled: number, place in the binary tree, boxes set aside on the way there.
-        let mut open = vec![(0, 0, 0)];
-        while let Some((number, at, aside)) = open.pop() {
-            layout.fill(&mut tree, number, at, aside, &mut open);
+        // Nodes to be filled: number, place in the binary tree, depth.
+        let mut open = vec![(0, 0, 1)];
+        while let Some((number, at, depth)) = open.pop() {
+            layout.fill(&mut tree, number, at, depth, &mut open);
         }
     }
     tree.places = layout.places;
@@ -71,7 +68,7 @@ struct Plan {
     first: [u8; ENTRIES],
 }
 
-fn plan(binary: &[BinaryNode]) -> Vec<Plan> {
+fn plan(binary: &[BinaryNode], corners: &[[Steps; 3]]) -> Vec<Plan> {
     let none = Plan {
         count: 0,
         cost: [0.0; ENTRIES],
@@ -92,7 +89,12 @@ fn plan(binary: &[BinaryNode]) -> Vec<Plan> {
                 cost: [LEAF_COST * area; ENTRIES],
                 ..none
             },
-            (false, true) => joined(area, &plans[child], &plans[child + 1]),
+            (false, true) => {
+                let (a, b) = (&plans[child], &plans[child + 1]);
+                let fits = || fit(&triangles_below(binary, at), corners);
+                let is_leaf = (a.count + b.count) as usize <= PIECES && fits();
+                joined(area, a, b, is_leaf)
+            }
             (false, false) => {
                 stack.extend([(at, true), (child, false), (child + 1, false)]);
                 none
@@ -102,7 +104,37 @@ fn plan(binary: &[BinaryNode]) -> Vec<Plan> {
     plans
 }
 
-fn joined(area: f32, a: &Plan, b: &Plan) -> Plan {
+/// Whether triangles make a leaf.
+fn fit(triangles: &[u32], corners: &[[Steps; 3]]) -> bool {
+    let mut points: Vec<Steps> = Vec::with_capacity(SIZE);
+    for point in triangles.iter().flat_map(|&t| corners[t as usize]) {
+        if !points.contains(&point) {
+            points.push(point);
+        }
+        if points.len() > SIZE {
+            return false;
+        }
+    }
+    triangles.len() <= SIZE
+}
+
+/// Different triangles of a subtree of the binary tree.
+fn triangles_below(binary: &[BinaryNode], at: usize) -> Vec<u32> {
+    let mut known: Vec<u32> = Vec::with_capacity(SIZE);
+    let mut stack = vec![at];
+    while let Some(at) = stack.pop() {
+        let node = &binary[at];
+        if !node.is_leaf {
+            stack.extend([node.index as usize, node.index as usize + 1]);
+        } else if !known.contains(&node.index) {
+            known.push(node.index);
+        }
+    }
+    known
+}
+
+/// * `is_leaf`: whether it can be one.
+fn joined(area: f32, a: &Plan, b: &Plan, is_leaf: bool) -> Plan {
     // The best way to deal some entries to both children.
     let dealt = |entries: usize| {
         (1..entries)
@@ -116,7 +148,7 @@ fn joined(area: f32, a: &Plan, b: &Plan) -> Plan {
         cost: [cost + area; ENTRIES],
         first: [first; ENTRIES],
     };
-    if count as usize <= SIZE && LEAF_COST * area <= plan.cost[0] {
+    if is_leaf && LEAF_COST * area <= plan.cost[0] {
         (plan.cost[0], plan.first[0]) = (LEAF_COST * area, 0);
     }
     for entries in 2..=ENTRIES {
@@ -134,10 +166,9 @@ fn joined(area: f32, a: &Plan, b: &Plan) -> Plan {
 struct Layout<'a> {
     binary: &'a [BinaryNode],
     plan: Vec<Plan>,
-    corners: &'a [[DVec3; 3]],
+    corners: &'a [[Steps; 3]],
     /// Triangles by place: as many for each leaf as it may hold.
     places: Vec<u32>,
-    step: f64,
     room: f32,
 }
 
@@ -151,7 +182,7 @@ impl Layout<'_> {
         tree: &mut Draft,
         number: usize,
         at: usize,
-        aside: usize,
+        depth: usize,
         open: &mut Vec<(usize, usize, usize)>,
     ) {
         let mut children = Vec::with_capacity(ENTRIES);
@@ -161,8 +192,9 @@ impl Layout<'_> {
             let first = usize::from(self.plan[at].first[0]);
             self.deal(at, first, ENTRIES - first, &mut children);
         }
-        let aside = aside + children.len() - 1;
-        tree.stack = tree.stack.max(aside + 1);
+        tree.depth = tree.depth.max(depth);
+        // Inner children first.
+        children.sort_by_key(|&child| self.is_leaf(child));
         let boxes: Vec<(Vec3, Vec3)> = (children.iter())
             .map(|&child| {
                 let BinaryNode { lo, hi, .. } = self.binary[child];
@@ -170,19 +202,18 @@ impl Layout<'_> {
             })
             .collect();
         let first = [tree.nodes.len() as u32, tree.leaves.len() as u32];
-        let mut leaves = 0;
-        for (k, &child) in children.iter().enumerate() {
+        for &child in &children {
             if self.is_leaf(child) {
-                leaves |= 1 << k;
                 let leaf = self.leaf(child);
                 tree.leaves.push(leaf);
             } else {
-                open.push((tree.nodes.len(), child, aside));
+                open.push((tree.nodes.len(), child, depth + 1));
                 tree.nodes.push(Node::EMPTY);
             }
         }
         debug_assert!(tree.leaves.len() < LEAF as usize);
-        tree.nodes[number] = Node::new(&boxes, leaves, first);
+        let inner = tree.nodes.len() - first[0] as usize;
+        tree.nodes[number] = Node::new(&boxes, inner, first);
     }
 
     /// The entries that the children of a binary node become.
@@ -204,21 +235,11 @@ impl Layout<'_> {
     }
 
     fn leaf(&mut self, at: usize) -> Leaf {
-        let mut known: Vec<u32> = Vec::with_capacity(SIZE);
-        let mut stack = vec![at];
-        while let Some(at) = stack.pop() {
-            let node = &self.binary[at];
-            if !node.is_leaf {
-                stack.extend([node.index as usize, node.index as usize + 1]);
-            } else if !known.contains(&node.index) {
-                // A slender triangle may be there in several pieces.
-                known.push(node.index);
-            }
-        }
-        let corners: Vec<[DVec3; 3]> = known.iter().map(|&t| self.corners[t as usize]).collect();
+        let known = triangles_below(self.binary, at);
         for k in 0..SIZE {
             self.places.push(known[k.min(known.len() - 1)]);
         }
-        Leaf::new(&corners, self.step)
+        let corners: Vec<[Steps; 3]> = known.iter().map(|&t| self.corners[t as usize]).collect();
+        Leaf::new(&corners)
     }
 }

@@ -1,117 +1,147 @@
-//! Four triangles.
+//! Triangles with common corners.
 
-use super::{KINDS, Kinds, Label, Ray};
-use glam::{DVec3, Vec4};
+use super::node::{ANY, Normals, UNIT};
+use super::ray::Line;
+use super::{KINDS, Kinds};
+use crate::accel::lanes::{Lanes, Numbers};
+use glam::DVec3;
 
-/// Triangles of a leaf at most.
-pub(super) const SIZE: usize = 4;
+/// Triangles of a leaf at most, and corners of all of them.
+pub(super) const SIZE: usize = 8;
 
-/// Corners in steps that are the same for the whole tree, so that they are exact: all that it takes to
-/// decide what a ray meets is in three lines of a cache.
+/// Height of a triangle, in radii, below which its normal is not relied on: a million roundings of double precision.
+const SLIVER: f64 = 1e-9;
+
+/// Up to eight triangles over up to eight points, in two lines of a cache. Points are counted in steps that are the
+/// same for the whole tree, so that they are exact.
 #[derive(Clone, Debug)]
-#[repr(align(64))]
+#[repr(C, align(128))]
 pub(super) struct Leaf {
-    corners: [[[i32; 4]; 3]; 3],
-    /// What is known of each.
-    pub(super) labels: [Label; 4],
-    /// Longest side, in radii.
-    longest: f32,
-    /// For each kind the triangles that are of it if entered, a bit each, and if left, four bits up.
-    pub(super) holds: [u8; KINDS],
+    points: [[i32; SIZE]; 3],
+    /// For each of the three corners the point that it is, four bits a triangle.
+    corners: [u32; 3],
+    /// For each kind the triangles that are of it if entered, and if left, a bit each.
+    pub(super) holds: [[u8; 2]; KINDS],
+    /// How many triangles there are.
+    count: u8,
 }
 
+const _: () = assert!(size_of::<Leaf>() == 128);
+
+/// A point in steps.
+pub(super) type Steps = [i32; 3];
+
 impl Leaf {
-    /// * `corners`: of one to four triangles, in radii, all of them whole steps. * `step`: in radii.
-    pub(super) fn new(corners: &[[DVec3; 3]], step: f64) -> Self {
-        let last = corners.len() - 1;
-        let longest = corners.iter().fold(0.0f64, |most, [a, b, c]| {
-            most.max((*b - *a).length()).max((*c - *a).length())
-        });
-        let used = ((1u32 << corners.len()) - 1) as u8;
+    /// * `triangles`: one to eight, of at most eight different points.
+    pub(super) fn new(triangles: &[[Steps; 3]]) -> Self {
+        let mut points: Vec<Steps> = Vec::with_capacity(SIZE);
+        let mut corners = [0; 3];
+        for (k, triangle) in triangles.iter().enumerate() {
+            for (corner, point) in corners.iter_mut().zip(triangle) {
+                let known = points.iter().position(|p| p == point);
+                let at = known.unwrap_or(points.len());
+                if known.is_none() {
+                    points.push(*point);
+                }
+                *corner |= (at as u32) << (4 * k);
+            }
+        }
+        debug_assert!(points.len() <= SIZE && triangles.len() <= SIZE);
+        let used = ((1u32 << triangles.len()) - 1) as u8;
         Self {
-            corners: [0, 1, 2].map(|corner| {
-                std::array::from_fn(|axis| {
-                    std::array::from_fn(|k| (corners[k.min(last)][corner][axis] / step) as i32)
-                })
-            }),
-            labels: [Label::NONE; 4],
-            longest: (longest as f32).next_up(),
-            holds: [used | used << 4; KINDS],
+            // Points beyond the last are as far away as another, so that no number is large.
+            points: [0, 1, 2]
+                .map(|axis| std::array::from_fn(|k| points[k.min(points.len() - 1)][axis])),
+            corners,
+            holds: [[used; 2]; KINDS],
+            count: triangles.len() as u8,
         }
     }
 
     /// How many triangles there are.
     pub(super) fn count(&self) -> usize {
-        (self.holds[KINDS - 1] & 0xf).trailing_ones() as usize
+        self.count.into()
     }
 
     /// Corners of a triangle, in radii, to the bit as they were given.
+    ///
+    /// * `step`: in radii.
     #[inline(always)]
     pub(super) fn corners(&self, k: usize, step: f64) -> [DVec3; 3] {
-        let k = k & 3;
-        [0, 1, 2].map(|corner| {
-            let c = &self.corners[corner];
-            step * DVec3::new(f64::from(c[0][k]), f64::from(c[1][k]), f64::from(c[2][k]))
+        let [x, y, z] = &self.points;
+        self.corners.map(|corner| {
+            let p = (corner >> (4 * k) & 7) as usize;
+            step * DVec3::new(f64::from(x[p]), f64::from(y[p]), f64::from(z[p]))
         })
+    }
+
+    /// What the normals of all triangles are between.
+    ///
+    /// * `step`: in radii.
+    pub(super) fn normals(&self, step: f64) -> Normals {
+        let mut all = [[i8::MAX, i8::MIN]; 3];
+        for k in 0..self.count() {
+            let [a, b, c] = self.corners(k, step);
+            let normal = (b - a).cross(c - a);
+            let longest = (b - a).length().max((c - a).length());
+            // Which side of a sliver is seen is decided by rounding.
+            if normal.length() < SLIVER * longest {
+                return ANY;
+            }
+            let normal = (UNIT * normal.normalize()).to_array();
+            for ([least, most], n) in all.iter_mut().zip(normal) {
+                *least = (*least).min(n.floor().clamp(-UNIT, UNIT) as i8);
+                *most = (*most).max(n.ceil().clamp(-UNIT, UNIT) as i8);
+            }
+        }
+        all
     }
 
     /// Turns a triangle inside out.
     pub(super) fn turn(&mut self, k: usize) {
-        for axis in 0..3 {
-            let other = self.corners[1][axis][k];
-            self.corners[1][axis][k] = std::mem::replace(&mut self.corners[2][axis][k], other);
-        }
+        let [_, b, c] = self.corners.map(|corner| corner >> (4 * k) & 7);
+        let change = (b ^ c) << (4 * k);
+        self.corners[1] ^= change;
+        self.corners[2] ^= change;
     }
 
-    /// Which of the triangles a ray may meet: the test of Moeller and Trumbore (1997) without divisions,
-    /// with room for rounding.
+    /// Which of the triangles the line of a ray may meet from the side that some kinds are asked for, a bit each: the test
+    /// of [`Shear`](super::super::shear::Shear) with room for rounding.
     #[inline(always)]
-    pub(super) fn meets(&self, ray: &Ray, step: f32, room: f32, limit: f32, kinds: Kinds) -> u32 {
-        let holds = u32::from(kinds.held(&self.holds));
-        if holds == 0 {
-            return 0;
-        }
-        let axes = [0, 1, 2];
-        let [a, b, c] = &self.corners;
-        let from = axes.map(|k| ray.origin[k] - step * wide(a[k]));
-        // Differences of whole numbers, which are exact.
-        let side = |p: &[[i32; 4]; 3]| {
-            axes.map(|k| step * wide(std::array::from_fn(|i| p[k][i].wrapping_sub(a[k][i]))))
-        };
-        let (u, v) = (side(b), side(c));
-        let p = cross(&ray.dir, &v);
-        let q = cross(&from, &u);
-        let det = dot(&u, &p);
-        let across = room * self.longest;
-        let along = 2.0 * across * self.longest;
-        // Positive if the ray runs against the outward normal.
-        let enters = det.cmpge(Vec4::splat(-along)).bitmask();
-        let leaves = det.cmple(Vec4::splat(along)).bitmask();
-        let sign = det.signum();
-        let det = det.abs();
-        let (x, y) = (sign * dot(&from, &p), sign * dot(&ray.dir, &q));
-        let t = sign * dot(&v, &q);
-        let within = x.min(y).min(det - x - y).cmpge(Vec4::splat(-2.0 * across));
-        let ahead = t.cmpge(Vec4::splat(-along)) & t.cmple(limit * det + along);
-        (within & ahead).bitmask() & (holds & enters | holds >> 4 & leaves)
+    pub(super) fn meets<L: Lanes>(&self, line: &Line, kinds: Kinds) -> u32 {
+        type Row<L> = <L as Lanes>::Eight;
+        let step = Row::<L>::splat(line.step);
+        let zero = Row::<L>::splat(0.0);
+        let x = self.axis::<L>(line.axes[0], step, line.from[0]);
+        let y = self.axis::<L>(line.axes[1], step, line.from[1]);
+        let z = self.axis::<L>(line.axes[2], step, line.from[2]);
+        let x = x.sub(z.mul(Row::<L>::splat(line.slope[0])));
+        let y = y.sub(z.mul(Row::<L>::splat(line.slope[1])));
+        // How far points are off the ray.
+        let off = x.max(zero.sub(x)).add(y.max(zero.sub(y)));
+
+        let [a, b, c] = self.corners;
+        let (ax, ay) = (L::pick(x, a), L::pick(y, a));
+        let (bx, by) = (L::pick(x, b), L::pick(y, b));
+        let (cx, cy) = (L::pick(x, c), L::pick(y, c));
+        let u = bx.mul(cy).sub(by.mul(cx));
+        let v = cx.mul(ay).sub(cy.mul(ax));
+        let w = ax.mul(by).sub(ay.mul(bx));
+        let off = L::pick(off, a).add(L::pick(off, b)).add(L::pick(off, c));
+        // Each of the three is off by as much as a point may be, times how far the other points are off.
+        let room = off
+            .add(Row::<L>::splat(line.room))
+            .mul(Row::<L>::splat(2.0 * line.room));
+        let left = zero.sub(room).le(u.min(v).min(w));
+        let entered = u.max(v).max(w).le(room);
+        let [may_enter, may_leave] = kinds.of_leaf(&self.holds).map(u32::from);
+        entered & may_enter | left & may_leave
     }
-}
 
-#[inline(always)]
-fn wide(steps: [i32; 4]) -> Vec4 {
-    Vec4::from_array(steps.map(|s| s as f32))
-}
-
-#[inline(always)]
-fn dot(a: &[Vec4; 3], b: &[Vec4; 3]) -> Vec4 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn cross(a: &[Vec4; 3], b: &[Vec4; 3]) -> [Vec4; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    #[inline(always)]
+    fn axis<L: Lanes>(&self, axis: usize, step: L::Eight, from: f32) -> L::Eight {
+        L::whole(&self.points[axis])
+            .mul(step)
+            .sub(L::Eight::splat(from))
+    }
 }

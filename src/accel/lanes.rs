@@ -1,4 +1,4 @@
-//! Eight and sixteen numbers at a time.
+//! Eight and sixteen numbers of single precision at a time, for trees of one's own.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -6,14 +6,23 @@ mod avx2;
 mod avx512;
 
 #[cfg(target_arch = "x86_64")]
-pub(super) use {avx2::Avx2, avx512::Avx512};
+pub(crate) use {avx2::Avx2, avx512::Avx512};
 
-use super::node::{CHILDREN, Children};
 use glam::Vec4;
+
+/// Children of a node at most.
+pub(crate) const CHILDREN: usize = 16;
+
+/// Children of one kind: their numbers are those of the first and their places together.
+#[derive(Clone, Copy)]
+pub(crate) struct Children<'a> {
+    pub(crate) first: u32,
+    pub(crate) places: &'a [u8; CHILDREN],
+}
 
 /// Numbers in single precision, side by side. Every operation rounds as it does on one number, so that results are the
 /// same to the bit whatever does it.
-pub(in crate::scene) trait Numbers: Copy {
+pub(crate) trait Numbers: Copy {
     /// How many.
     const COUNT: u32;
     fn splat(x: f32) -> Self;
@@ -30,11 +39,23 @@ pub(in crate::scene) trait Numbers: Copy {
 }
 
 /// What a processor does with them.
-pub(super) trait Lanes {
+pub(crate) trait Lanes {
     type Eight: Numbers;
     type Sixteen: Numbers;
     fn bytes(x: &[u8; CHILDREN]) -> Self::Sixteen;
     fn words(x: &[u16; 16]) -> Self::Sixteen;
+    fn whole(x: &[i32; 8]) -> Self::Eight;
+    /// The lanes of eight in another order: lane `k` is the one whose number the lower three of the four bits from `4 k`
+    /// on say.
+    fn pick(x: Self::Eight, order: u32) -> Self::Eight;
+    /// Where the dot product of `low` and `by` is at most `room`, and where that of `high` and `by` is at least `-room`, a
+    /// bit each. All of the three products and sums must be numbers of 16 bits.
+    fn facing(
+        low: [&[i8; CHILDREN]; 3],
+        high: [&[i8; CHILDREN]; 3],
+        by: [i16; 3],
+        room: i16,
+    ) -> [u16; 2];
     /// Eight from the first, the fifth and the ninth on.
     fn head(x: Self::Sixteen) -> Self::Eight;
     fn middle(x: Self::Sixteen) -> Self::Eight;
@@ -65,10 +86,10 @@ pub(super) trait Lanes {
 /// Something to look at later: how far away it is, as bits, which order as the distances do, and what it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(transparent)]
-pub(super) struct Aside(u64);
+pub(crate) struct Aside(u64);
 
 impl Aside {
-    pub(super) const NONE: Self = Self(0);
+    pub(crate) const NONE: Self = Self(0);
 
     #[inline(always)]
     fn new(distance: f32, number: u32) -> Self {
@@ -76,12 +97,12 @@ impl Aside {
     }
 
     #[inline(always)]
-    pub(super) fn distance(self) -> f32 {
+    pub(crate) fn distance(self) -> f32 {
         f32::from_bits((self.0 >> 32) as u32)
     }
 
     #[inline(always)]
-    pub(super) fn number(self) -> usize {
+    pub(crate) fn number(self) -> usize {
         self.0 as u32 as usize
     }
 }
@@ -97,7 +118,10 @@ fn line_up(
     while chosen != 0 {
         let k = chosen.trailing_zeros() as usize;
         chosen &= chosen - 1;
-        let other = Aside::new(begins[k], children.first + u32::from(children.places[k]));
+        let other = Aside::new(
+            begins[k],
+            children.first.wrapping_add(u32::from(children.places[k])),
+        );
         let mut at = count;
         while at > 0 && row[at - 1] < other {
             row[at] = row[at - 1];
@@ -110,7 +134,7 @@ fn line_up(
 }
 
 /// For every processor.
-pub(super) struct Plain;
+pub(crate) struct Plain;
 
 impl Numbers for Vec4 {
     const COUNT: u32 = 4;
@@ -228,6 +252,38 @@ impl Lanes for Plain {
     }
 
     #[inline(always)]
+    fn whole(x: &[i32; 8]) -> Self::Eight {
+        let four = |k: usize| Vec4::from_array(std::array::from_fn(|i| x[k + i] as f32));
+        [four(0), four(4)]
+    }
+
+    #[inline(always)]
+    fn pick(x: Self::Eight, order: u32) -> Self::Eight {
+        let x = Self::eight(x);
+        let one = |k: usize| x[(order >> (4 * k) & 7) as usize];
+        let four = |k: usize| Vec4::from_array(std::array::from_fn(|i| one(k + i)));
+        [four(0), four(4)]
+    }
+
+    #[inline(always)]
+    fn facing(
+        low: [&[i8; CHILDREN]; 3],
+        high: [&[i8; CHILDREN]; 3],
+        by: [i16; 3],
+        room: i16,
+    ) -> [u16; 2] {
+        let dot = |x: [&[i8; CHILDREN]; 3], k: usize| -> i16 {
+            (0..3).map(|axis| i16::from(x[axis][k]) * by[axis]).sum()
+        };
+        let mut sides = [0; 2];
+        for k in 0..CHILDREN {
+            sides[0] |= u16::from(dot(low, k) <= room) << k;
+            sides[1] |= u16::from(dot(high, k) >= -room) << k;
+        }
+        sides
+    }
+
+    #[inline(always)]
     fn head(x: Self::Sixteen) -> Self::Eight {
         x[0]
     }
@@ -252,6 +308,27 @@ impl Lanes for Plain {
     fn sixteen(x: Self::Sixteen) -> [f32; CHILDREN] {
         both(x.map(Self::eight))
     }
+}
+
+/// Whether the processor has what [`Avx2`] needs, and BMI1, POPCNT and LZCNT.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(crate) fn has_avx2() -> bool {
+    is_x86_feature_detected!("avx2")
+        && is_x86_feature_detected!("fma")
+        && is_x86_feature_detected!("bmi1")
+        && is_x86_feature_detected!("popcnt")
+        && is_x86_feature_detected!("lzcnt")
+}
+
+/// Whether it has what [`Avx512`] needs besides.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(crate) fn has_avx512() -> bool {
+    is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512bw")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512vl")
 }
 
 #[inline(always)]

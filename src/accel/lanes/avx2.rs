@@ -11,7 +11,7 @@ use glam::Vec4;
 use std::arch::x86_64::*;
 
 /// See the file.
-pub(in crate::scene::tree) struct Avx2;
+pub(crate) struct Avx2;
 
 macro_rules! numbers {
     ($type:ty, $count:literal, $set:ident, $fma:ident; $($name:ident $intrinsic:ident),*; $le:expr) => {
@@ -60,6 +60,21 @@ pub(super) fn turn(columns: &[Vec4; 3], v: Vec4) -> Vec4 {
     }
 }
 
+/// Three rows of bytes times three numbers, summed.
+#[inline(always)]
+pub(super) fn dot(rows: [&[i8; CHILDREN]; 3], by: [i16; 3]) -> __m256i {
+    let [x, y, z] = rows;
+    unsafe {
+        let x = _mm256_cvtepi8_epi16(_mm_loadu_si128(x.as_ptr().cast()));
+        let y = _mm256_cvtepi8_epi16(_mm_loadu_si128(y.as_ptr().cast()));
+        let z = _mm256_cvtepi8_epi16(_mm_loadu_si128(z.as_ptr().cast()));
+        let x = _mm256_mullo_epi16(x, _mm256_set1_epi16(by[0]));
+        let y = _mm256_mullo_epi16(y, _mm256_set1_epi16(by[1]));
+        let z = _mm256_mullo_epi16(z, _mm256_set1_epi16(by[2]));
+        _mm256_add_epi16(_mm256_add_epi16(x, y), z)
+    }
+}
+
 impl Lanes for Avx2 {
     type Eight = __m256;
     type Sixteen = [__m256; 2];
@@ -83,6 +98,37 @@ impl Lanes for Avx2 {
                 _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(_mm_loadu_si128(head))),
                 _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(_mm_loadu_si128(tail))),
             ]
+        }
+    }
+
+    #[inline(always)]
+    fn whole(x: &[i32; 8]) -> Self::Eight {
+        unsafe { _mm256_cvtepi32_ps(_mm256_loadu_si256(x.as_ptr().cast())) }
+    }
+
+    #[inline(always)]
+    fn pick(x: Self::Eight, order: u32) -> Self::Eight {
+        unsafe {
+            let shifts = _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28);
+            let order = _mm256_srlv_epi32(_mm256_set1_epi32(order as i32), shifts);
+            _mm256_permutevar8x32_ps(x, order)
+        }
+    }
+
+    #[inline(always)]
+    fn facing(
+        low: [&[i8; CHILDREN]; 3],
+        high: [&[i8; CHILDREN]; 3],
+        by: [i16; 3],
+        room: i16,
+    ) -> [u16; 2] {
+        unsafe {
+            let (low, high) = (dot(low, by), dot(high, by));
+            let beyond = _mm256_cmpgt_epi16(low, _mm256_set1_epi16(room));
+            let before = _mm256_cmpgt_epi16(_mm256_set1_epi16(-room), high);
+            let both = _mm256_permute4x64_epi64::<0xd8>(_mm256_packs_epi16(beyond, before));
+            let none = !(_mm256_movemask_epi8(both) as u32);
+            [none as u16, (none >> 16) as u16]
         }
     }
 

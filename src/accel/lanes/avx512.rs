@@ -6,13 +6,13 @@
               arrays as long as what is read or written"
 )]
 
-use super::avx2::{Avx2, numbers, turn};
+use super::avx2::{Avx2, dot, numbers, turn};
 use super::{Aside, CHILDREN, Children, Lanes, Numbers, line_up};
 use glam::Vec4;
 use std::arch::x86_64::*;
 
 /// See the file.
-pub(in crate::scene::tree) struct Avx512;
+pub(crate) struct Avx512;
 
 numbers! {
     __m512, 16, _mm512_set1_ps, _mm512_fmadd_ps;
@@ -34,6 +34,31 @@ impl Lanes for Avx512 {
         unsafe {
             let x = _mm256_loadu_si256(x.as_ptr().cast());
             _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(x))
+        }
+    }
+
+    #[inline(always)]
+    fn whole(x: &[i32; 8]) -> Self::Eight {
+        Avx2::whole(x)
+    }
+
+    #[inline(always)]
+    fn pick(x: Self::Eight, order: u32) -> Self::Eight {
+        Avx2::pick(x, order)
+    }
+
+    #[inline(always)]
+    fn facing(
+        low: [&[i8; CHILDREN]; 3],
+        high: [&[i8; CHILDREN]; 3],
+        by: [i16; 3],
+        room: i16,
+    ) -> [u16; 2] {
+        unsafe {
+            [
+                _mm256_cmple_epi16_mask(dot(low, by), _mm256_set1_epi16(room)),
+                _mm256_cmpge_epi16_mask(dot(high, by), _mm256_set1_epi16(-room)),
+            ]
         }
     }
 
