@@ -20,6 +20,15 @@ pub(crate) struct Children<'a> {
     pub(crate) places: &'a [u8; CHILDREN],
 }
 
+impl Children<'_> {
+    /// Number of a child.
+    #[inline(always)]
+    pub(crate) fn number(&self, k: u32) -> u32 {
+        self.first
+            .wrapping_add(u32::from(self.places[k as usize % CHILDREN]))
+    }
+}
+
 /// Numbers in single precision, side by side. Every operation rounds as it does on one number, so that results are the
 /// same to the bit whatever does it.
 pub(crate) trait Numbers: Copy {
@@ -48,14 +57,11 @@ pub(crate) trait Lanes {
     /// The lanes of eight in another order: lane `k` is the one whose number the lower three of the four bits from `4 k`
     /// on say.
     fn pick(x: Self::Eight, order: u32) -> Self::Eight;
-    /// Where the dot product of `low` and `by` is at most `room`, and where that of `high` and `by` is at least `-room`, a
-    /// bit each. All of the three products and sums must be numbers of 16 bits.
-    fn facing(
-        low: [&[i8; CHILDREN]; 3],
-        high: [&[i8; CHILDREN]; 3],
-        by: [i16; 3],
-        room: i16,
-    ) -> [u16; 2];
+    fn short(x: &[u16; 8]) -> Self::Eight;
+    /// Which of eight boxes around normals have some that a direction runs against, and some that it runs along, a bit each.
+    ///
+    /// * `least`, `most`: corners of the boxes, 128 more than they are, the fourth number of no meaning.
+    fn facing(least: &[[u8; 4]; 8], most: &[[u8; 4]; 8], way: &Way) -> [u32; 2];
     /// Eight from the first, the fifth and the ninth on.
     fn head(x: Self::Sixteen) -> Self::Eight;
     fn middle(x: Self::Sixteen) -> Self::Eight;
@@ -83,6 +89,34 @@ pub(crate) trait Lanes {
     }
 }
 
+/// A direction for [`Lanes::facing`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    /// In parts of 63, the fourth 0.
+    by: [i8; 4],
+    /// Of all bits where that is negative.
+    down: [u8; 4],
+    /// Products up to which, and from which on.
+    against: i32,
+    along: i32,
+}
+
+impl Way {
+    /// * `room`: how much a product may be on the other side of zero, in parts of 127 times 63.
+    #[inline(always)]
+    pub(crate) fn new(dir: [f32; 3], room: i32) -> Self {
+        // To the nearest: above zero, conversions round down.
+        let by = dir.map(|d| (63.0 * d + 64.5) as i32 - 64);
+        let all = 128 * (by[0] + by[1] + by[2]);
+        Self {
+            by: [by[0] as i8, by[1] as i8, by[2] as i8, 0],
+            down: [by[0], by[1], by[2], 0].map(|d| (d >> 31) as u8),
+            against: all + room,
+            along: all - room,
+        }
+    }
+}
+
 /// Something to look at later: how far away it is, as bits, which order as the distances do, and what it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(transparent)]
@@ -92,7 +126,7 @@ impl Aside {
     pub(crate) const NONE: Self = Self(0);
 
     #[inline(always)]
-    fn new(distance: f32, number: u32) -> Self {
+    pub(crate) fn new(distance: f32, number: u32) -> Self {
         Self(u64::from(distance.to_bits()) << 32 | u64::from(number))
     }
 
@@ -118,10 +152,7 @@ fn line_up(
     while chosen != 0 {
         let k = chosen.trailing_zeros() as usize;
         chosen &= chosen - 1;
-        let other = Aside::new(
-            begins[k],
-            children.first.wrapping_add(u32::from(children.places[k])),
-        );
+        let other = Aside::new(begins[k], children.number(k as u32));
         let mut at = count;
         while at > 0 && row[at - 1] < other {
             row[at] = row[at - 1];
@@ -266,19 +297,26 @@ impl Lanes for Plain {
     }
 
     #[inline(always)]
-    fn facing(
-        low: [&[i8; CHILDREN]; 3],
-        high: [&[i8; CHILDREN]; 3],
-        by: [i16; 3],
-        room: i16,
-    ) -> [u16; 2] {
-        let dot = |x: [&[i8; CHILDREN]; 3], k: usize| -> i16 {
-            (0..3).map(|axis| i16::from(x[axis][k]) * by[axis]).sum()
-        };
+    fn short(x: &[u16; 8]) -> Self::Eight {
+        let four = |k: usize| Vec4::from_array(std::array::from_fn(|i| f32::from(x[k + i])));
+        [four(0), four(4)]
+    }
+
+    #[inline(always)]
+    fn facing(least: &[[u8; 4]; 8], most: &[[u8; 4]; 8], way: &Way) -> [u32; 2] {
         let mut sides = [0; 2];
-        for k in 0..CHILDREN {
-            sides[0] |= u16::from(dot(low, k) <= room) << k;
-            sides[1] |= u16::from(dot(high, k) >= -room) << k;
+        for k in 0..8 {
+            let dot = |near: &[u8; 4], far: &[u8; 4]| -> i32 {
+                let corner = |axis: usize| match way.down[axis] {
+                    0 => near[axis],
+                    _ => far[axis],
+                };
+                (0..3)
+                    .map(|axis| i32::from(corner(axis)) * i32::from(way.by[axis]))
+                    .sum()
+            };
+            sides[0] |= u32::from(dot(&least[k], &most[k]) <= way.against) << k;
+            sides[1] |= u32::from(dot(&most[k], &least[k]) >= way.along) << k;
         }
         sides
     }

@@ -6,7 +6,7 @@
               of arrays as long as what is read"
 )]
 
-use super::{CHILDREN, Lanes, Numbers, both};
+use super::{CHILDREN, Lanes, Numbers, Way, both};
 use glam::Vec4;
 use std::arch::x86_64::*;
 
@@ -60,21 +60,6 @@ pub(super) fn turn(columns: &[Vec4; 3], v: Vec4) -> Vec4 {
     }
 }
 
-/// Three rows of bytes times three numbers, summed.
-#[inline(always)]
-pub(super) fn dot(rows: [&[i8; CHILDREN]; 3], by: [i16; 3]) -> __m256i {
-    let [x, y, z] = rows;
-    unsafe {
-        let x = _mm256_cvtepi8_epi16(_mm_loadu_si128(x.as_ptr().cast()));
-        let y = _mm256_cvtepi8_epi16(_mm_loadu_si128(y.as_ptr().cast()));
-        let z = _mm256_cvtepi8_epi16(_mm_loadu_si128(z.as_ptr().cast()));
-        let x = _mm256_mullo_epi16(x, _mm256_set1_epi16(by[0]));
-        let y = _mm256_mullo_epi16(y, _mm256_set1_epi16(by[1]));
-        let z = _mm256_mullo_epi16(z, _mm256_set1_epi16(by[2]));
-        _mm256_add_epi16(_mm256_add_epi16(x, y), z)
-    }
-}
-
 impl Lanes for Avx2 {
     type Eight = __m256;
     type Sixteen = [__m256; 2];
@@ -116,19 +101,28 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn facing(
-        low: [&[i8; CHILDREN]; 3],
-        high: [&[i8; CHILDREN]; 3],
-        by: [i16; 3],
-        room: i16,
-    ) -> [u16; 2] {
+    fn short(x: &[u16; 8]) -> Self::Eight {
         unsafe {
-            let (low, high) = (dot(low, by), dot(high, by));
-            let beyond = _mm256_cmpgt_epi16(low, _mm256_set1_epi16(room));
-            let before = _mm256_cmpgt_epi16(_mm256_set1_epi16(-room), high);
-            let both = _mm256_permute4x64_epi64::<0xd8>(_mm256_packs_epi16(beyond, before));
-            let none = !(_mm256_movemask_epi8(both) as u32);
-            [none as u16, (none >> 16) as u16]
+            let x = _mm_loadu_si128(x.as_ptr().cast());
+            _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(x))
+        }
+    }
+
+    #[inline(always)]
+    fn facing(least: &[[u8; 4]; 8], most: &[[u8; 4]; 8], way: &Way) -> [u32; 2] {
+        unsafe {
+            let least = _mm256_loadu_si256(least.as_ptr().cast());
+            let most = _mm256_loadu_si256(most.as_ptr().cast());
+            let down = _mm256_set1_epi32(i32::from_ne_bytes(way.down));
+            let by = _mm256_set1_epi32(i32::from_ne_bytes(way.by.map(|d| d as u8)));
+            let ones = _mm256_set1_epi16(1);
+            // Two products of at most 255 times 63 have room in 16 bits.
+            let near = _mm256_maddubs_epi16(_mm256_blendv_epi8(least, most, down), by);
+            let far = _mm256_maddubs_epi16(_mm256_blendv_epi8(most, least, down), by);
+            let (near, far) = (_mm256_madd_epi16(near, ones), _mm256_madd_epi16(far, ones));
+            let beyond = _mm256_cmpgt_epi32(near, _mm256_set1_epi32(way.against));
+            let before = _mm256_cmpgt_epi32(_mm256_set1_epi32(way.along), far);
+            [beyond, before].map(|x| !_mm256_movemask_ps(_mm256_castsi256_ps(x)) as u32 & 0xff)
         }
     }
 

@@ -6,8 +6,8 @@
               arrays as long as what is read or written"
 )]
 
-use super::avx2::{Avx2, dot, numbers, turn};
-use super::{Aside, CHILDREN, Children, Lanes, Numbers, line_up};
+use super::avx2::{Avx2, numbers, turn};
+use super::{Aside, CHILDREN, Children, Lanes, Numbers, Way, line_up};
 use glam::Vec4;
 use std::arch::x86_64::*;
 
@@ -48,18 +48,13 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
-    fn facing(
-        low: [&[i8; CHILDREN]; 3],
-        high: [&[i8; CHILDREN]; 3],
-        by: [i16; 3],
-        room: i16,
-    ) -> [u16; 2] {
-        unsafe {
-            [
-                _mm256_cmple_epi16_mask(dot(low, by), _mm256_set1_epi16(room)),
-                _mm256_cmpge_epi16_mask(dot(high, by), _mm256_set1_epi16(-room)),
-            ]
-        }
+    fn short(x: &[u16; 8]) -> Self::Eight {
+        Avx2::short(x)
+    }
+
+    #[inline(always)]
+    fn facing(least: &[[u8; 4]; 8], most: &[[u8; 4]; 8], way: &Way) -> [u32; 2] {
+        Avx2::facing(least, most, way)
     }
 
     #[inline(always)]

@@ -4,7 +4,7 @@
 
 use super::shear::{Meeting, Shear};
 use super::solid::Bound;
-use super::tree::{Candidate, Kinds};
+use super::tree::{Candidate, Kind};
 use super::{Found, Stretch, Triangles};
 use crate::fiber::{Part, Region};
 use glam::DVec3;
@@ -48,7 +48,7 @@ impl Triangles {
         } else {
             self.layers(origin, dir, bound)
         };
-        let kinds = Kinds::of(bound).and(Kinds::around(region));
+        let kind = Kind::layers(bound);
         let mut some: Vec<Crossing<'_>> = Vec::new();
         self.each_tile(origin, dir, from, |stretch, from| {
             let shear = Shear::new(stretch.origin, stretch.dir);
@@ -58,7 +58,7 @@ impl Triangles {
                 // All crossings up to the next outward one: as a rule there is none before it.
                 some.clear();
                 let mut end = stretch.length;
-                self.tree.visit(&shear, end, kinds, |triangle| {
+                self.tree.visit(&shear, end, kind, |triangle| {
                     let Meeting { t, enters } = shear.meet(&triangle.corners())?;
                     let label = triangle.label();
                     let counts = label.bound == bound || (enters && label.sides[0] == region);
@@ -167,7 +167,7 @@ impl Triangles {
         } = stretch;
         let shear = Shear::new(origin, dir);
         let mut all: Vec<Crossing<'_>> = Vec::new();
-        (self.tree).visit(&shear, length, Kinds::ALL, |triangle| {
+        (self.tree).visit(&shear, length, Kind::ALL, |triangle| {
             let Meeting { t, enters } = shear.meet(&triangle.corners())?;
             if t >= 0.0 && t < length && counts(triangle) {
                 all.push(Crossing {

@@ -32,7 +32,7 @@ use super::{Element, Hit, HitState, MeshPart, Region};
 use crate::species::FiberMesh;
 use glam::{DVec2, DVec3};
 use shear::{Meeting, Shear};
-use tree::{Candidate, Kinds, Tree};
+use tree::{Candidate, Kind, Tree};
 
 /// How far the search goes beyond a tile, in radii. Tiles hold twice as much.
 const OVERLAP: f64 = 1e-3;
@@ -260,11 +260,11 @@ impl Triangles {
 
     fn first_in_tile(&self, limit: f64, search: &Search) -> Option<(f64, Candidate<'_>, bool)> {
         let mut best: Option<(f64, Candidate<'_>, bool)> = None;
-        let kinds = Kinds::around(search.region);
+        let kind = Kind::around(search.region);
         // The tree sees single precision; what is nearest is decided here.
-        self.tree.visit(&search.shear, limit, kinds, |triangle| {
+        self.tree.visit(&search.shear, limit, kind, |triangle| {
             let Meeting { t, enters } = search.shear.meet(&triangle.corners())?;
-            if !(t >= 0.0 && t <= limit && triangle.is_of(kinds, enters)) {
+            if !(t >= 0.0 && t <= limit && triangle.is_of(kind, enters)) {
                 return None;
             }
             // Labels come last: they are read where something is met.

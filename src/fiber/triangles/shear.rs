@@ -40,7 +40,7 @@ impl Shear {
     }
 
     /// The meeting with a triangle's plane within its edges, wherever on the line it is.
-    #[inline]
+    #[inline(always)]
     pub(super) fn meet(&self, corners: &[DVec3; 3]) -> Option<Meeting> {
         let [x, y, z] = self.axes;
         let [sx, sy, sz] = self.shear;

@@ -1,4 +1,4 @@
-//! The triangles of a tile in a tree: nodes of sixteen boxes, leaves of up to eight triangles with eight corners. All of a
+//! The triangles of a tile in a tree: nodes of eight boxes, leaves of up to eight triangles with eight corners. All of a
 //! node, and of a leaf, is tested at once in single precision, with the room that its rounding needs: what a ray meets is
 //! shown to the caller, who decides in double precision, and little else is.
 
@@ -18,7 +18,7 @@ use crate::fiber::{Part, Region};
 use crate::pages::Table;
 use glam::{DVec3, Vec3};
 use leaf::{Leaf, SIZE, Steps};
-use node::Node;
+use node::{Grid, Node};
 use ray::Line;
 use search::Query;
 
@@ -31,51 +31,26 @@ const LEAF: u32 = 1 << 31;
 /// Number of kinds of triangles that can be asked for.
 const KINDS: usize = Region::COUNT + 3;
 
-/// Kinds of triangles that a ray is to be shown; others it may be shown.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Kinds([usize; 2]);
+/// A kind of triangles that a ray is to be shown; others it may be shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Kind(usize);
 
-impl Kinds {
-    pub(super) const ALL: Self = Self([KINDS - 1; 2]);
+impl Kind {
+    pub(super) const ALL: Self = Self(KINDS - 1);
 
     /// What a ray in a region leaves it through.
     pub(super) fn around(region: Region) -> Self {
-        Self([region as usize; 2])
+        Self(region as usize)
     }
 
-    /// Those of a bound, from either side.
-    pub(super) fn of(bound: Bound) -> Self {
-        Self([kind_of(bound); 2])
-    }
-
-    /// The kinds of both, each a single one.
-    pub(super) fn and(self, other: Self) -> Self {
-        Self([self.0[0], other.0[0]])
-    }
-
-    /// Of the marks for each kind those for these.
-    #[inline(always)]
-    fn of_node(self, holds: &[[u16; 2]; KINDS - 1], count: u8) -> [u16; 2] {
-        let all = ((1u32 << count) - 1) as u16;
-        let of = |kind: usize| *holds.get(kind).unwrap_or(&[all; 2]);
-        let (a, b) = (of(self.0[0]), of(self.0[1]));
-        [a[0] | b[0], a[1] | b[1]]
-    }
-
-    /// Of the marks for each kind those for these.
-    #[inline(always)]
-    fn of_leaf(self, holds: &[[u8; 2]; KINDS]) -> [u8; 2] {
-        let (a, b) = (holds[self.0[0]], holds[self.0[1]]);
-        [a[0] | b[0], a[1] | b[1]]
-    }
-}
-
-fn kind_of(bound: Bound) -> usize {
-    match bound {
-        Bound::Medulla => Region::COUNT,
-        Bound::Void => Region::COUNT + 1,
-        // Nobody counts those.
-        Bound::Outer | Bound::Cortex => KINDS - 1,
+    /// What bounds voids, or a medium, from either side, and what a ray in it leaves it through besides.
+    pub(super) fn layers(bound: Bound) -> Self {
+        match bound {
+            Bound::Medulla => Self(Region::COUNT),
+            Bound::Void => Self(Region::COUNT + 1),
+            // Nobody counts those.
+            Bound::Outer | Bound::Cortex => Self::ALL,
+        }
     }
 }
 
@@ -97,6 +72,24 @@ impl Label {
         bound: Bound::Outer,
         part: Part::Scale,
     };
+
+    /// For each kind whether it is of it if entered, and if left.
+    fn kinds(&self) -> [[bool; 2]; KINDS] {
+        let mut all = [[false; 2]; KINDS];
+        let [outside, inside] = self.sides;
+        all[outside as usize][0] = true;
+        all[inside as usize][1] = true;
+        all[KINDS - 1] = [true; 2];
+        for (region, bound) in [
+            (Region::Medulla, Bound::Medulla),
+            (Region::Void, Bound::Void),
+        ] {
+            let around = all[region as usize];
+            let is_bound = self.bound == bound;
+            all[Kind::layers(bound).0] = around.map(|is_around| is_around || is_bound);
+        }
+        all
+    }
 }
 
 /// What is known of the triangles of a leaf: read when one of them is met.
@@ -105,12 +98,13 @@ impl Label {
 struct Labels([Label; SIZE]);
 
 /// A tree over triangles that the caller keeps.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Tree {
     nodes: Table<Node>,
     leaves: Table<Leaf>,
     /// By leaf.
     labels: Table<Labels>,
+    grid: Grid,
     /// Nodes one below the other, at most.
     depth: usize,
     /// Corners are multiples of this, in radii.
@@ -145,6 +139,7 @@ impl Tree {
             labels: Table::new(vec![Labels([Label::NONE; SIZE]); draft.leaves.len()]),
             nodes: Table::new(draft.nodes),
             leaves: Table::new(draft.leaves),
+            grid: draft.grid,
             depth: draft.depth,
             step,
             room,
@@ -169,11 +164,9 @@ impl Tree {
             leaf.holds = [[0; 2]; KINDS];
             for k in 0..leaf.count() {
                 let label = of(SIZE * index + k);
-                let [outside, inside] = label.sides;
-                leaf.holds[outside as usize][0] |= 1 << k;
-                leaf.holds[inside as usize][1] |= 1 << k;
-                for kind in [kind_of(label.bound), KINDS - 1] {
-                    leaf.holds[kind] = leaf.holds[kind].map(|holds| holds | 1 << k);
+                for (holds, is_of) in leaf.holds.iter_mut().zip(label.kinds()) {
+                    holds[0] |= u8::from(is_of[0]) << k;
+                    holds[1] |= u8::from(is_of[1]) << k;
                 }
                 self.labels[index].0[k] = label;
             }
@@ -182,7 +175,7 @@ impl Tree {
         for index in (0..self.nodes.len()).rev() {
             let node = &self.nodes[index];
             let held = |k: usize| {
-                let child = node.child(k);
+                let child = node.child(k as u32);
                 let number = (child & !LEAF) as usize;
                 if child & LEAF == 0 {
                     return self.nodes[number].held();
@@ -196,7 +189,7 @@ impl Tree {
         }
     }
 
-    /// Shows the caller all triangles of some kinds that a ray may meet in front of a limit, near ones
+    /// Shows the caller all triangles of a kind that a ray may meet in front of a limit, near ones
     /// as a rule first, perhaps more than once, and some that it does not meet.
     ///
     /// * `test`: the new limit if it is to be nearer.
@@ -205,7 +198,7 @@ impl Tree {
         &'a self,
         ray: &Shear,
         limit: f64,
-        kinds: Kinds,
+        kind: Kind,
         test: impl FnMut(Candidate<'a>) -> Option<f64>,
     ) {
         if self.nodes.is_empty() {
@@ -213,9 +206,9 @@ impl Tree {
         }
         let query = Query {
             tree: self,
-            line: Line::new(ray, self.step, self.room),
+            line: Line::new(ray, &self.grid, self.step, self.room),
             limit,
-            kinds,
+            kind: kind.0,
         };
         query.answer(test);
     }
@@ -248,11 +241,10 @@ impl Candidate<'_> {
         self.leaf.corners(self.place % SIZE, self.step)
     }
 
-    /// Whether it is of some kind, entered or left.
+    /// Whether it is of a kind, entered or left.
     #[inline(always)]
-    pub(super) fn is_of(self, kinds: Kinds, enters: bool) -> bool {
-        let [entered, left] = kinds.of_leaf(&self.leaf.holds);
-        let held = if enters { entered } else { left };
+    pub(super) fn is_of(self, kind: Kind, enters: bool) -> bool {
+        let held = self.leaf.holds[kind.0 % KINDS][usize::from(!enters)];
         held >> (self.place % SIZE) & 1 != 0
     }
 }

@@ -1,13 +1,12 @@
-//! From a binary tree to nodes of sixteen and leaves of eight.
+//! From a binary tree to nodes and leaves of eight.
 //!
 //! What becomes a node, a leaf or an entry of a node above is what costs a ray least (Ylitie, Karras and
-//! Laine 2017, section 3): the least cost of each subtree as one to sixteen entries, from the bottom up.
+//! Laine 2017, section 3): the least cost of each subtree as one to eight entries, from the bottom up.
 
 use super::LEAF;
 use super::leaf::{Leaf, SIZE, Steps};
-use super::node::Node;
+use super::node::{CHILDREN, Grid, Node};
 use crate::accel::BinaryNode;
-use crate::accel::lanes::CHILDREN;
 use glam::Vec3;
 
 /// Entries of a node.
@@ -23,6 +22,7 @@ const LEAF_COST: f32 = 1.5;
 pub(super) struct Draft {
     pub(super) nodes: Vec<Node>,
     pub(super) leaves: Vec<Leaf>,
+    pub(super) grid: Grid,
     /// For each place of a leaf, in order, the triangle there.
     pub(super) places: Vec<u32>,
     /// Nodes one below the other, at most.
@@ -31,7 +31,10 @@ pub(super) struct Draft {
 
 /// * `room`: around boxes at least, in radii.
 pub(super) fn lay_out(binary: &[BinaryNode], corners: &[[Steps; 3]], room: f32) -> Draft {
+    let room = room.max(ROOM);
+    let (lo, hi) = (binary.first()).map_or((Vec3::ZERO, Vec3::ZERO), |root| (root.lo, root.hi));
     let mut tree = Draft {
+        grid: Grid::new(lo - room, hi + room),
         nodes: Vec::new(),
         leaves: Vec::new(),
         places: Vec::new(),
@@ -42,7 +45,7 @@ pub(super) fn lay_out(binary: &[BinaryNode], corners: &[[Steps; 3]], room: f32) 
         plan: plan(binary, corners),
         corners,
         places: Vec::with_capacity(corners.len() * 2),
-        room: room.max(ROOM),
+        room,
     };
     if !binary.is_empty() {
         tree.nodes.push(Node::EMPTY);
@@ -213,7 +216,7 @@ impl Layout<'_> {
         }
         debug_assert!(tree.leaves.len() < LEAF as usize);
         let inner = tree.nodes.len() - first[0] as usize;
-        tree.nodes[number] = Node::new(&boxes, inner, first);
+        tree.nodes[number] = Node::new(&tree.grid, &boxes, inner, first);
     }
 
     /// The entries that the children of a binary node become.

@@ -1,8 +1,8 @@
 //! Triangles with common corners.
 
-use super::node::{ANY, Normals, UNIT};
+use super::KINDS;
+use super::node::{ANY, Normals, normals};
 use super::ray::Line;
-use super::{KINDS, Kinds};
 use crate::accel::lanes::{Lanes, Numbers};
 use glam::DVec3;
 
@@ -79,7 +79,7 @@ impl Leaf {
     ///
     /// * `step`: in radii.
     pub(super) fn normals(&self, step: f64) -> Normals {
-        let mut all = [[i8::MAX, i8::MIN]; 3];
+        let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for k in 0..self.count() {
             let [a, b, c] = self.corners(k, step);
             let normal = (b - a).cross(c - a);
@@ -88,13 +88,10 @@ impl Leaf {
             if normal.length() < SLIVER * longest {
                 return ANY;
             }
-            let normal = (UNIT * normal.normalize()).to_array();
-            for ([least, most], n) in all.iter_mut().zip(normal) {
-                *least = (*least).min(n.floor().clamp(-UNIT, UNIT) as i8);
-                *most = (*most).max(n.ceil().clamp(-UNIT, UNIT) as i8);
-            }
+            let normal = normal.normalize();
+            (lo, hi) = (lo.min(normal), hi.max(normal));
         }
-        all
+        normals(lo, hi)
     }
 
     /// Turns a triangle inside out.
@@ -105,10 +102,10 @@ impl Leaf {
         self.corners[2] ^= change;
     }
 
-    /// Which of the triangles the line of a ray may meet from the side that some kinds are asked for, a bit each: the test
+    /// Which of the triangles of a kind the line of a ray may meet from the side that is asked for, a bit each: the test
     /// of [`Shear`](super::super::shear::Shear) with room for rounding.
     #[inline(always)]
-    pub(super) fn meets<L: Lanes>(&self, line: &Line, kinds: Kinds) -> u32 {
+    pub(super) fn meets<L: Lanes>(&self, line: &Line, kind: usize) -> u32 {
         type Row<L> = <L as Lanes>::Eight;
         let step = Row::<L>::splat(line.step);
         let zero = Row::<L>::splat(0.0);
@@ -134,7 +131,7 @@ impl Leaf {
             .mul(Row::<L>::splat(2.0 * line.room));
         let left = zero.sub(room).le(u.min(v).min(w));
         let entered = u.max(v).max(w).le(room);
-        let [may_enter, may_leave] = kinds.of_leaf(&self.holds).map(u32::from);
+        let [may_enter, may_leave] = self.holds[kind % KINDS].map(u32::from);
         entered & may_enter | left & may_leave
     }
 

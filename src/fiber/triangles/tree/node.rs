@@ -1,113 +1,135 @@
-//! Sixteen boxes.
+//! Eight boxes.
 
 use super::ray::Line;
-use super::{KINDS, Kinds, LEAF};
-use crate::accel::lanes::{CHILDREN, Children, Lanes, Numbers};
-use glam::{Vec3, Vec4};
+use super::{KINDS, LEAF};
+use crate::accel::lanes::{Lanes, Numbers};
+use glam::{DVec3, Vec3};
 
-/// Boxes of children, and of the normals in them, in four lines of a cache: planes are counted in steps from a corner,
-/// normals in parts of [`UNIT`]. Inner children come first.
+/// Children of a node at most.
+pub(super) const CHILDREN: usize = 8;
+
+/// Boxes of children, and of the normals in them, in three lines of a cache. Inner children come first.
 #[derive(Clone, Debug)]
-#[repr(C, align(128))]
+#[repr(C, align(64))]
 pub(super) struct Node {
-    corner: [f32; 3],
-    /// Length of a step along each axis, in radii.
-    step: [f32; 3],
+    /// For each axis lower and upper planes, in steps of the [`Grid`].
+    planes: [[[u16; CHILDREN]; 2]; 3],
+    /// The least and the greatest that normals have, as [`Lanes::facing`].
+    normals: [[[u8; 4]; CHILDREN]; 2],
+    /// For each kind the children that hold some if entered, and if left, a bit each.
+    holds: [[u8; 2]; KINDS],
     /// First inner child and first leaf, less the number of inner children; both kinds follow one another.
     first: [u32; 2],
-    /// For each axis lower and upper planes.
-    planes: [[[u8; CHILDREN]; 2]; 3],
-    /// For each axis the least and the greatest that normals have.
-    normals: [[[i8; CHILDREN]; 2]; 3],
-    /// For each kind but the last, which all are of, the children that hold some if entered, and if left, a bit each.
-    holds: [[u16; 2]; KINDS - 1],
     count: u8,
     /// Inner children.
     inner: u8,
 }
 
-const _: () = assert!(size_of::<Node>() == 256);
+const _: () = assert!(size_of::<Node>() == 192);
 
-/// Length of a normal.
-pub(super) const UNIT: f64 = 127.0;
+/// Where the planes of boxes are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grid {
+    pub(super) corner: Vec3,
+    /// Length of a step along each axis, in radii.
+    pub(super) step: Vec3,
+}
 
-/// For each axis the least and the greatest that some normals have, in parts of [`UNIT`].
-pub(super) type Normals = [[i8; 2]; 3];
+impl Grid {
+    /// * `lo`, `hi`: corners of a box around all boxes.
+    pub(super) fn new(lo: Vec3, hi: Vec3) -> Self {
+        // One step more than the size takes, for rounding.
+        let step = ((hi - lo) / 65534.0).max(Vec3::splat(f32::MIN_POSITIVE));
+        Self { corner: lo, step }
+    }
+
+    /// Planes of a box, not within it.
+    fn planes(&self, (lo, hi): (Vec3, Vec3)) -> [[u16; 2]; 3] {
+        [0, 1, 2].map(|axis| {
+            let count = |x: f32| f64::from(x - self.corner[axis]) / f64::from(self.step[axis]);
+            [
+                count(lo[axis]).floor() as u16,
+                count(hi[axis]).ceil() as u16,
+            ]
+        })
+    }
+}
+
+/// For each axis the least and the greatest of some normals, as [`Lanes::facing`] has them.
+pub(super) type Normals = [[u8; 4]; 2];
 
 /// Those of all directions.
-pub(super) const ANY: Normals = [[-127, 127]; 3];
+pub(super) const ANY: Normals = [[1, 1, 1, 0], [255, 255, 255, 0]];
 
-/// A child's number is the first of its kind and its place in the node.
-const PLACES: [u8; CHILDREN] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+/// Those between two.
+pub(super) fn normals(lo: DVec3, hi: DVec3) -> Normals {
+    let bytes = |x: DVec3| [x.x as u8, x.y as u8, x.z as u8, 0];
+    [
+        bytes((127.0 * lo).floor() + 128.0),
+        bytes((127.0 * hi).ceil() + 128.0),
+    ]
+}
+
+/// What a child holds: for each kind whether there are triangles of it if entered, and if left, and their normals.
+pub(super) type Held = ([[bool; 2]; KINDS], Normals);
 
 impl Node {
     /// One to be filled, without children.
     pub(super) const EMPTY: Self = Self {
-        corner: [0.0; 3],
-        step: [1.0; 3],
+        planes: [[[u16::MAX; CHILDREN], [0; CHILDREN]]; 3],
+        normals: [[ANY[0]; CHILDREN], [ANY[1]; CHILDREN]],
+        holds: [[0; 2]; KINDS],
         first: [0; 2],
-        planes: [[[u8::MAX; CHILDREN], [0; CHILDREN]]; 3],
-        normals: [[[-127; CHILDREN], [127; CHILDREN]]; 3],
-        holds: [[0; 2]; KINDS - 1],
         count: 0,
         inner: 0,
     };
 
-    /// * `boxes`: of the children, with all room that they need; one to sixteen, inner ones first.
+    /// One whose children hold all kinds.
+    ///
+    /// * `boxes`: of the children, with all room that they need; one to eight, inner ones first.
     /// * `inner`: how many are no leaves. * `first`: the first of both kinds of children.
-    pub(super) fn new(boxes: &[(Vec3, Vec3)], inner: usize, first: [u32; 2]) -> Self {
-        let lo = boxes.iter().fold(Vec3::INFINITY, |a, b| a.min(b.0));
-        let hi = boxes.iter().fold(Vec3::NEG_INFINITY, |a, b| a.max(b.1));
-        // One step more than the size takes, for rounding.
-        let step = ((hi - lo) / 254.0).max(Vec3::splat(f32::MIN_POSITIVE));
+    pub(super) fn new(grid: &Grid, boxes: &[(Vec3, Vec3)], inner: usize, first: [u32; 2]) -> Self {
         let mut node = Self {
-            corner: lo.to_array(),
-            step: step.to_array(),
+            holds: [[((1u32 << boxes.len()) - 1) as u8; 2]; KINDS],
             first: [first[0], first[1].wrapping_sub(inner as u32)],
-            holds: [[((1u32 << boxes.len()) - 1) as u16; 2]; KINDS - 1],
             count: boxes.len() as u8,
             inner: inner as u8,
             ..Self::EMPTY
         };
-        for (k, (low, high)) in boxes.iter().enumerate() {
-            for axis in 0..3 {
-                let count = |x: f32| f64::from(x - lo[axis]) / f64::from(step[axis]);
-                node.planes[axis][0][k] = count(low[axis]).floor() as u8;
-                node.planes[axis][1][k] = count(high[axis]).ceil() as u8;
+        for (k, corners) in boxes.iter().enumerate() {
+            for (own, [low, high]) in node.planes.iter_mut().zip(grid.planes(*corners)) {
+                own[0][k] = low;
+                own[1][k] = high;
             }
         }
         node
     }
 
-    /// Says what the children hold: for each kind whether some of it if entered, and if left, and normals.
-    pub(super) fn label(&mut self, children: &[([[bool; 2]; KINDS], Normals)]) {
-        self.holds = [[0; 2]; KINDS - 1];
-        for (k, (holds, normals)) in children.iter().enumerate() {
+    /// Says what the children hold.
+    pub(super) fn label(&mut self, children: &[Held]) {
+        self.holds = [[0; 2]; KINDS];
+        for (k, (holds, [least, most])) in children.iter().enumerate() {
             for (own, [entered, left]) in self.holds.iter_mut().zip(holds) {
-                own[0] |= u16::from(*entered) << k;
-                own[1] |= u16::from(*left) << k;
+                own[0] |= u8::from(*entered) << k;
+                own[1] |= u8::from(*left) << k;
             }
-            for (own, [least, most]) in self.normals.iter_mut().zip(normals) {
-                own[0][k] = *least;
-                own[1][k] = *most;
-            }
+            self.normals[0][k] = *least;
+            self.normals[1][k] = *most;
         }
     }
 
-    /// What all children together hold, as [`Self::label`] is told.
-    pub(super) fn held(&self) -> ([[bool; 2]; KINDS], Normals) {
-        let mut all = [[true; 2]; KINDS];
-        for (all, holds) in all.iter_mut().zip(&self.holds) {
-            *all = holds.map(|holds| holds != 0);
-        }
-        let normals = self.normals.map(|[least, most]| {
-            let (least, most) = (&least[..self.count()], &most[..self.count()]);
-            [
-                least.iter().fold(i8::MAX, |a, b| a.min(*b)),
-                most.iter().fold(i8::MIN, |a, b| a.max(*b)),
-            ]
-        });
-        (all, normals)
+    /// What all children together hold.
+    pub(super) fn held(&self) -> Held {
+        let holds = self.holds.map(|holds| holds.map(|holds| holds != 0));
+        let of = |side: usize, axis: usize| {
+            let all = self.normals[side][..self.count()].iter();
+            all.map(move |n| n[axis])
+        };
+        let normals = [
+            std::array::from_fn(|axis| of(0, axis).min().unwrap_or(0)),
+            std::array::from_fn(|axis| of(1, axis).max().unwrap_or(255)),
+        ];
+        (holds, normals)
     }
 
     /// How many children there are.
@@ -115,88 +137,48 @@ impl Node {
         self.count.into()
     }
 
-    /// Number of a child.
-    pub(super) fn child(&self, k: usize) -> u32 {
-        let is_leaf = k >= usize::from(self.inner);
-        let number = self.first[usize::from(is_leaf)].wrapping_add(k as u32);
-        number | if is_leaf { LEAF } else { 0 }
+    /// Number of a child, and [`LEAF`] if it is a leaf.
+    #[inline(always)]
+    pub(super) fn child(&self, k: u32) -> u32 {
+        match k < u32::from(self.inner) {
+            true => self.first[0].wrapping_add(k),
+            false => self.first[1].wrapping_add(k) | LEAF,
+        }
     }
 
-    /// Of `met` the inner children.
+    /// Which children are no leaves, a bit each.
     #[inline(always)]
-    pub(super) fn inner(&self, met: u16) -> (u16, Children<'_>) {
-        let [first, _] = self.first;
-        let is_inner = ((1u32 << self.inner) - 1) as u16;
-        (
-            met & is_inner,
-            Children {
-                first,
-                places: &PLACES,
-            },
-        )
+    pub(super) fn inner(&self) -> u32 {
+        (1 << self.inner) - 1
     }
 
-    /// Of `met` the leaves.
+    /// Which of the boxes that hold something of a kind, seen from the side that is asked for, a ray meets, a bit each, and
+    /// where it enters each.
     #[inline(always)]
-    pub(super) fn leaves(&self, met: u16) -> (u16, Children<'_>) {
-        let [_, first] = self.first;
-        let is_inner = ((1u32 << self.inner) - 1) as u16;
-        (
-            met & !is_inner,
-            Children {
-                first,
-                places: &PLACES,
-            },
-        )
-    }
-
-    /// Which of the boxes that hold something of some kinds, seen from the side that is asked for, a ray meets, a bit each,
-    /// and where it enters each.
-    #[inline(always)]
-    pub(super) fn meets<L: Lanes>(
-        &self,
-        line: &Line,
-        limit: f32,
-        kinds: Kinds,
-    ) -> (u16, L::Sixteen) {
-        let [x, y, z] = self.step;
-        let step = Vec4::new(x, y, z, 0.0) * line.inverse;
-        let [x, y, z] = self.corner;
-        let start = (Vec4::new(x, y, z, 0.0) - line.origin) * line.inverse;
-        let x = self.slab::<L>(0, line.down[0], step.x, start.x);
-        let y = self.slab::<L>(1, line.down[1], step.y, start.y);
-        let z = self.slab::<L>(2, line.down[2], step.z, start.z);
-        let (zero, limit) = (L::Sixteen::splat(0.0), L::Sixteen::splat(limit));
+    pub(super) fn meets<L: Lanes>(&self, line: &Line, limit: f32, kind: usize) -> (u32, L::Eight) {
+        let x = self.slab::<L>(0, line);
+        let y = self.slab::<L>(1, line);
+        let z = self.slab::<L>(2, line);
+        let (zero, limit) = (L::Eight::splat(0.0), L::Eight::splat(limit));
         let begin = x.0.max(y.0).max(z.0.max(zero));
         let end = x.1.min(y.1).min(z.1.min(limit));
-        let met = begin.le(end) as u16;
-
-        let [x, y, z] = &self.normals;
-        let [dx, dy, dz] = line.down.map(|down| down & 1);
-        let [against, along] = L::facing(
-            [&x[dx], &y[dy], &z[dz]],
-            [&x[dx ^ 1], &y[dy ^ 1], &z[dz ^ 1]],
-            line.steps,
-            line.slack,
-        );
-        let [entered, left] = kinds.of_node(&self.holds, self.count);
+        let met = begin.le(end);
+        let [least, most] = &self.normals;
+        let [against, along] = L::facing(least, most, &line.way);
+        let [entered, left] = self.holds[kind % KINDS].map(u32::from);
         (met & (against & entered | along & left), begin)
     }
 
     /// Where a ray enters what lies between two planes of each box, and where it leaves it.
     #[inline(always)]
-    fn slab<L: Lanes>(
-        &self,
-        axis: usize,
-        near: usize,
-        step: f32,
-        start: f32,
-    ) -> (L::Sixteen, L::Sixteen) {
-        let (near, far) = (&self.planes[axis][near & 1], &self.planes[axis][!near & 1]);
-        let (step, start) = (L::Sixteen::splat(step), L::Sixteen::splat(start));
+    fn slab<L: Lanes>(&self, axis: usize, line: &Line) -> (L::Eight, L::Eight) {
+        let down = line.down[axis] & 1;
+        let (near, far) = (&self.planes[axis][down], &self.planes[axis][down ^ 1]);
+        let step = L::Eight::splat(line.steps[axis]);
+        let start = L::Eight::splat(line.start[axis]);
         (
-            L::bytes(near).mul_add(step, start),
-            L::bytes(far).mul_add(step, start),
+            L::short(near).mul_add(step, start),
+            L::short(far).mul_add(step, start),
         )
     }
 }

@@ -1,41 +1,30 @@
 //! From the root of a tree to the triangles that a ray may meet.
 //!
-//! A search waits for memory and for what the one step says of the next. So what it will look at is asked for early, and
-//! leaves are looked at a step later, when they have arrived.
+//! Most rays meet one child of a node: then there is nothing to set aside.
 
 use super::leaf::Leaf;
+use super::node::{CHILDREN, Node};
 use super::ray::Line;
-use super::{Candidate, Kinds, SIZE, Tree};
-use crate::accel::lanes::{Aside, CHILDREN, Lanes, Plain};
+use super::{Candidate, LEAF, SIZE, Tree};
+use crate::accel::lanes::{Aside, Lanes, Plain};
 #[cfg(target_arch = "x86_64")]
 use crate::accel::lanes::{Avx2, Avx512, has_avx2, has_avx512};
 #[cfg(test)]
-use crate::fiber::triangles::shear::{Meeting, Shear};
+use crate::fiber::triangles::{
+    shear::{Meeting, Shear},
+    tree::Kind,
+};
 use crate::pages::fetch;
 use std::cell::RefCell;
 
-/// Nodes one below the other that the room that is kept is large enough for.
-const DEPTH: usize = 20;
-/// Children set aside for each node on the way from the root.
-const EACH: usize = CHILDREN;
-
-/// Room for what is set aside, with some for rows that are not full.
-struct Room {
-    nodes: [Aside; DEPTH * EACH + CHILDREN],
-    leaves: Ripening,
-}
-
-/// Leaves found in the step before and in this one.
-type Ripening = [[Aside; 2 * CHILDREN]; 2];
+/// Nodes one below the other for which there is room that is kept.
+const DEPTH: usize = 24;
+/// Room for what is set aside: the children of each node on the way from the root.
+const ROOM: usize = CHILDREN * DEPTH;
 
 thread_local! {
     // Kept: to fill it anew would take longer than a search.
-    static ROOM: RefCell<Room> = const {
-        RefCell::new(Room {
-            nodes: [Aside::NONE; DEPTH * EACH + CHILDREN],
-            leaves: [[Aside::NONE; 2 * CHILDREN]; 2],
-        })
-    };
+    static ASIDE: RefCell<[Aside; ROOM]> = const { RefCell::new([Aside::NONE; ROOM]) };
 }
 
 /// What a search is asked.
@@ -43,29 +32,25 @@ pub(super) struct Query<'a> {
     pub(super) tree: &'a Tree,
     pub(super) line: Line,
     pub(super) limit: f64,
-    pub(super) kinds: Kinds,
+    pub(super) kind: usize,
 }
 
 impl<'a> Query<'a> {
     /// Shows all triangles that the ray may meet to `test`, which gives the new limit if that is to be nearer.
     #[inline(always)]
     pub(super) fn answer(&self, test: impl FnMut(Candidate<'a>) -> Option<f64>) {
-        ROOM.with_borrow_mut(|room| {
-            let Room { nodes, leaves } = room;
-            if self.tree.depth <= DEPTH {
-                self.on_this_processor(nodes, leaves, test);
-            } else {
-                let mut nodes = vec![Aside::NONE; self.tree.depth * EACH + CHILDREN];
-                self.on_this_processor(&mut nodes, leaves, test);
-            }
-        });
+        if self.tree.depth <= DEPTH {
+            ASIDE.with_borrow_mut(|aside| self.on_this_processor(aside, test));
+        } else {
+            let mut aside = vec![Aside::NONE; CHILDREN * self.tree.depth];
+            self.on_this_processor(&mut aside, test);
+        }
     }
 
     #[inline(always)]
     fn on_this_processor(
         &self,
-        nodes: &mut [Aside],
-        leaves: &mut Ripening,
+        aside: &mut [Aside],
         test: impl FnMut(Candidate<'a>) -> Option<f64>,
     ) {
         #[cfg(target_arch = "x86_64")]
@@ -74,112 +59,90 @@ impl<'a> Query<'a> {
             // SAFETY: the processor has what the functions enable.
             return unsafe {
                 match has_avx512() {
-                    true => self.avx512(nodes, leaves, test),
-                    false => self.avx2(nodes, leaves, test),
+                    true => self.avx512(aside, test),
+                    false => self.avx2(aside, test),
                 }
             };
         }
-        self.walk::<Plain>(nodes, leaves, test);
+        self.walk::<Plain>(aside, test);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma,bmi1,popcnt,lzcnt")]
-    fn avx2(
-        &self,
-        nodes: &mut [Aside],
-        leaves: &mut Ripening,
-        test: impl FnMut(Candidate<'a>) -> Option<f64>,
-    ) {
-        self.walk::<Avx2>(nodes, leaves, test);
+    fn avx2(&self, aside: &mut [Aside], test: impl FnMut(Candidate<'a>) -> Option<f64>) {
+        self.walk::<Avx2>(aside, test);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,popcnt,lzcnt")]
-    fn avx512(
-        &self,
-        nodes: &mut [Aside],
-        leaves: &mut Ripening,
-        test: impl FnMut(Candidate<'a>) -> Option<f64>,
-    ) {
-        self.walk::<Avx512>(nodes, leaves, test);
+    fn avx512(&self, aside: &mut [Aside], test: impl FnMut(Candidate<'a>) -> Option<f64>) {
+        self.walk::<Avx512>(aside, test);
     }
 
     #[inline(always)]
     fn walk<L: Lanes>(
         &self,
         aside: &mut [Aside],
-        leaves: &mut Ripening,
         mut test: impl FnMut(Candidate<'a>) -> Option<f64>,
     ) {
         let tree = self.tree;
         let nodes = tree.nodes.entries();
         let mut limit = self.cut(self.limit);
-        let [ripe, found] = leaves;
-        let (mut ripe, mut found) = (ripe, found);
-        let mut ripe_count = 0;
-        let mut count = 1;
-        aside[0] = Aside::NONE;
+        let mut count = 0;
+        let mut next = 0;
         loop {
-            while count > 0 && aside[count - 1].distance() > limit {
+            if next & LEAF == 0 {
+                let node = &nodes[next as usize];
+                let (met, begins) = node.meets::<L>(&self.line, limit, self.kind);
+                // Most often one.
+                if met.is_power_of_two() {
+                    next = node.child(met.trailing_zeros());
+                    continue;
+                }
+                if met != 0 {
+                    count += line_up(met, &L::eight(begins), node, row(aside, count));
+                }
+            } else {
+                self.look::<L>((next & !LEAF) as usize, &mut limit, &mut test);
+            }
+            loop {
+                if count == 0 {
+                    return;
+                }
                 count -= 1;
-            }
-            if count == 0 {
-                self.look::<L>(&ripe[..ripe_count], &mut limit, &mut test);
-                return;
-            }
-            count -= 1;
-            let node = &nodes[aside[count].number()];
-            let (met, begins) = node.meets::<L>(&self.line, limit, self.kinds);
-            let (chosen, children) = node.inner(met);
-            count += L::line_up(chosen, begins, children, row(aside, count));
-            let (chosen, children) = node.leaves(met);
-            let found_count = L::line_up(chosen, begins, children, row(found, 0));
-            for leaf in &found[..found_count] {
-                fetch(&tree.leaves[leaf.number()]);
-            }
-            for k in 1..=2 {
-                // Where nothing is set aside, what an earlier search left there.
-                if let Some(node) = nodes.get(aside[count.saturating_sub(k)].number()) {
-                    fetch(node);
+                if aside[count].distance() <= limit {
+                    break;
                 }
             }
-            self.look::<L>(&ripe[..ripe_count], &mut limit, &mut test);
-            std::mem::swap(&mut ripe, &mut found);
-            ripe_count = found_count;
+            next = aside[count].number() as u32;
         }
     }
 
-    /// Looks at leaves, the last first.
+    /// Looks at a leaf.
     #[inline(always)]
     fn look<L: Lanes>(
         &self,
-        ripe: &[Aside],
+        number: usize,
         limit: &mut f32,
         test: &mut impl FnMut(Candidate<'a>) -> Option<f64>,
     ) {
-        for one in ripe.iter().rev() {
-            if one.distance() > *limit {
-                continue;
-            }
-            let number = one.number();
-            let leaf: &Leaf = &self.tree.leaves[number];
-            let mut met = leaf.meets::<L>(&self.line, self.kinds);
-            if met == 0 {
-                continue;
-            }
-            let labels = &self.tree.labels[number];
-            fetch(labels);
-            while met != 0 {
-                let k = met.trailing_zeros() as usize % SIZE;
-                met &= met - 1;
-                if let Some(t) = test(Candidate {
-                    leaf,
-                    label: &labels.0[k],
-                    place: SIZE * number + k,
-                    step: self.tree.step,
-                }) {
-                    *limit = self.cut(t);
-                }
+        let leaf: &Leaf = &self.tree.leaves[number];
+        let mut met = leaf.meets::<L>(&self.line, self.kind);
+        if met == 0 {
+            return;
+        }
+        let labels = &self.tree.labels[number];
+        fetch(labels);
+        while met != 0 {
+            let k = met.trailing_zeros() as usize % SIZE;
+            met &= met - 1;
+            if let Some(t) = test(Candidate {
+                leaf,
+                label: &labels.0[k],
+                place: SIZE * number + k,
+                step: self.tree.step,
+            }) {
+                *limit = self.cut(t);
             }
         }
     }
@@ -189,6 +152,32 @@ impl<'a> Query<'a> {
     fn cut(&self, t: f64) -> f32 {
         t as f32 * (1.0 + 4.0 * f32::EPSILON) + self.line.room
     }
+}
+
+/// Puts the chosen of a node's children in a row, the nearest last, and says how many.
+///
+/// * `begins`: where the ray enters their boxes, not negative.
+#[inline(always)]
+fn line_up(
+    mut chosen: u32,
+    begins: &[f32; CHILDREN],
+    node: &Node,
+    row: &mut [Aside; CHILDREN],
+) -> usize {
+    let mut count = 0;
+    while chosen != 0 {
+        let k = chosen.trailing_zeros();
+        chosen &= chosen - 1;
+        let other = Aside::new(begins[k as usize % CHILDREN], node.child(k));
+        let mut at = count;
+        while at > 0 && row[at - 1] < other {
+            row[at] = row[at - 1];
+            at -= 1;
+        }
+        row[at] = other;
+        count += 1;
+    }
+    count
 }
 
 /// Room for a row from a place on.
@@ -206,14 +195,14 @@ pub(super) fn on_each_processor<'a>(
     tree: &'a Tree,
     ray: &Shear,
     limit: f64,
-    kinds: Kinds,
+    kind: Kind,
     nearest: bool,
 ) -> Vec<(&'static str, Vec<(u64, u32, bool)>)> {
     let query = Query {
         tree,
-        line: Line::new(ray, tree.step, tree.room),
+        line: Line::new(ray, &tree.grid, tree.step, tree.room),
         limit,
-        kinds,
+        kind: kind.0,
     };
     let mut all = Vec::new();
     let mut run = |processor, search: &Search<'_, 'a>| {
@@ -221,33 +210,33 @@ pub(super) fn on_each_processor<'a>(
         let mut met = Vec::new();
         let mut test = |triangle: Candidate<'a>| {
             let Meeting { t, enters } = ray.meet(&triangle.corners())?;
-            if !(t >= 0.0 && t <= limit && triangle.is_of(kinds, enters)) {
+            if !(t >= 0.0 && t <= limit && triangle.is_of(kind, enters)) {
                 return None;
             }
             met.push(((t + 0.0).to_bits(), triangle.label().source, enters));
             best = best.min(t);
             nearest.then_some(best)
         };
-        ROOM.with_borrow_mut(|Room { nodes, leaves }| search(nodes, leaves, &mut test));
+        ASIDE.with_borrow_mut(|aside| search(aside, &mut test));
         met.retain(|m| !nearest || f64::from_bits(m.0) <= best);
         met.sort_unstable();
         // A triangle may be in several leaves.
         met.dedup();
         all.push((processor, met));
     };
-    run("this processor", &|nodes, leaves, test| {
-        query.on_this_processor(nodes, leaves, test)
+    run("this processor", &|aside, test| {
+        query.on_this_processor(aside, test)
     });
-    run("any processor", &|nodes, leaves, test| {
-        query.walk::<Plain>(nodes, leaves, test)
+    run("any processor", &|aside, test| {
+        query.walk::<Plain>(aside, test)
     });
     #[cfg(target_arch = "x86_64")]
     if has_avx2() {
-        run("AVX2", &|nodes, leaves, test| {
+        run("AVX2", &|aside, test| {
             #[allow(unsafe_code, reason = "the processor was asked")]
             // SAFETY: the processor has what the function enables.
             unsafe {
-                query.avx2(nodes, leaves, test);
+                query.avx2(aside, test);
             }
         });
     }
@@ -256,5 +245,4 @@ pub(super) fn on_each_processor<'a>(
 
 /// A search of [`on_each_processor`].
 #[cfg(test)]
-type Search<'s, 'a> =
-    dyn Fn(&mut [Aside], &mut Ripening, &mut dyn FnMut(Candidate<'a>) -> Option<f64>) + 's;
+type Search<'s, 'a> = dyn Fn(&mut [Aside], &mut dyn FnMut(Candidate<'a>) -> Option<f64>) + 's;

@@ -129,17 +129,17 @@ fn hostile(triangles: &[Corners], i: usize, rng: &mut Rng) -> (DVec3, DVec3) {
     (within - away * dir, dir)
 }
 
-/// What a ray meets of some kinds up to a limit: distance, triangle and side.
+/// What a ray meets of a kind up to a limit: distance, triangle and side.
 type Met = Vec<(u64, u32, bool)>;
 
 /// By a test of every triangle.
-fn every(triangles: &[Corners], ray: &Shear, limit: f64, kinds: Kinds) -> Met {
+fn every(triangles: &[Corners], ray: &Shear, limit: f64, kind: Kind) -> Met {
     let is_of = |label: Label, enters: bool| {
-        let side = label.sides[usize::from(!enters)] as usize;
-        kinds
-            .0
-            .iter()
-            .any(|&kind| kind == side || kind == kind_of(label.bound) || kind == KINDS - 1)
+        let side = label.sides[usize::from(!enters)];
+        let is_layer = label.bound == Bound::Void || side == Region::Void;
+        kind == Kind::ALL
+            || kind == Kind::around(side)
+            || (kind == Kind::layers(Bound::Void) && is_layer)
     };
     (triangles.iter().enumerate())
         .filter_map(|(k, corners)| {
@@ -153,17 +153,17 @@ fn every(triangles: &[Corners], ray: &Shear, limit: f64, kinds: Kinds) -> Met {
 #[test]
 fn every_ray_is_shown_to_the_bit_what_a_test_of_all_triangles_finds() {
     let mut rng = Rng::new(11, 0);
-    let around = [Region::Outside, Region::Cortex, Region::Void].map(Kinds::around);
-    let both = Kinds::of(Bound::Void).and(Kinds::around(Region::Medulla));
+    let around = [Region::Outside, Region::Cortex, Region::Void].map(Kind::around);
+    let layers = Kind::layers(Bound::Void);
     for (name, triangles) in meshes(&mut rng) {
         let tree = tree_of(&triangles);
         let mut hits = 0;
         for i in 0..6_000 {
             let (origin, dir) = hostile(&triangles, i, &mut rng);
             let ray = Shear::new(origin, dir);
-            let kinds = [Kinds::ALL, around[0], around[1], around[2], both][i % 5];
+            let kind = [Kind::ALL, around[0], around[1], around[2], layers][i % 5];
             for limit in [0.5, 4.0] {
-                let mut want = every(&triangles, &ray, limit, kinds);
+                let mut want = every(&triangles, &ray, limit, kind);
                 want.sort_unstable();
                 hits += want.len();
                 for nearest in [false, true] {
@@ -171,7 +171,7 @@ fn every_ray_is_shown_to_the_bit_what_a_test_of_all_triangles_finds() {
                     let least = want.first().map(|w| w.0);
                     let wanted = want.iter().filter(|w| !nearest || Some(w.0) == least);
                     let wanted: Met = wanted.copied().collect();
-                    for (processor, met) in on_each_processor(&tree, &ray, limit, kinds, nearest) {
+                    for (processor, met) in on_each_processor(&tree, &ray, limit, kind, nearest) {
                         assert_eq!(met, wanted, "{name}, ray {i}, {processor}: {origin} {dir}");
                     }
                 }
@@ -187,12 +187,12 @@ fn every_ray_is_shown_to_the_bit_what_a_test_of_all_triangles_finds() {
 fn leaves_are_met_alike_by_every_processor() {
     use crate::accel::lanes::{Avx2, Avx512, Plain, has_avx2, has_avx512};
     #[target_feature(enable = "avx2,fma,bmi1,popcnt,lzcnt")]
-    fn avx2(leaf: &Leaf, line: &Line, kinds: Kinds) -> u32 {
-        leaf.meets::<Avx2>(line, kinds)
+    fn avx2(leaf: &Leaf, line: &Line, kind: Kind) -> u32 {
+        leaf.meets::<Avx2>(line, kind.0)
     }
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,popcnt,lzcnt")]
-    fn avx512(leaf: &Leaf, line: &Line, kinds: Kinds) -> u32 {
-        leaf.meets::<Avx512>(line, kinds)
+    fn avx512(leaf: &Leaf, line: &Line, kind: Kind) -> u32 {
+        leaf.meets::<Avx512>(line, kind.0)
     }
     if !has_avx2() {
         return;
@@ -203,16 +203,16 @@ fn leaves_are_met_alike_by_every_processor() {
         let mut some = 0;
         for i in 0..4_000 {
             let (origin, dir) = hostile(&triangles, i, &mut rng);
-            let line = Line::new(&Shear::new(origin, dir), tree.step, tree.room);
+            let line = Line::new(&Shear::new(origin, dir), &tree.grid, tree.step, tree.room);
             let leaf = &tree.leaves[rng.bits() as usize % tree.leaves.len()];
-            let want = leaf.meets::<Plain>(&line, Kinds::ALL);
+            let want = leaf.meets::<Plain>(&line, Kind::ALL.0);
             some += usize::from(want != 0);
             #[allow(unsafe_code, reason = "the processor was asked")]
             // SAFETY: the processor has what the functions enable.
             unsafe {
-                assert_eq!(avx2(leaf, &line, Kinds::ALL), want, "{name}, ray {i}");
+                assert_eq!(avx2(leaf, &line, Kind::ALL), want, "{name}, ray {i}");
                 if has_avx512() {
-                    assert_eq!(avx512(leaf, &line, Kinds::ALL), want, "{name}, ray {i}");
+                    assert_eq!(avx512(leaf, &line, Kind::ALL), want, "{name}, ray {i}");
                 }
             }
         }
