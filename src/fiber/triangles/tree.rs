@@ -19,7 +19,6 @@ use crate::pages::Table;
 use glam::{DVec3, Vec3};
 use leaf::{Leaf, SIZE, Steps};
 use node::{Grid, Node};
-use ray::Line;
 use search::Query;
 
 /// Room for single precision, relative to the longest way of a ray: half a rounding for each of up to
@@ -206,7 +205,7 @@ impl Tree {
         }
         let query = Query {
             tree: self,
-            line: Line::new(ray, &self.grid, self.step, self.room),
+            ray,
             limit,
             kind: kind.0,
         };

@@ -5,16 +5,12 @@
 use super::leaf::Leaf;
 use super::node::{CHILDREN, Node};
 use super::ray::Line;
-use super::{Candidate, LEAF, SIZE, Tree};
+use super::{Candidate, LEAF, SIZE, Shear, Tree};
 use crate::accel::lanes::{Aside, Lanes, Plain};
 #[cfg(target_arch = "x86_64")]
 use crate::accel::lanes::{Avx2, Avx512, has_avx2, has_avx512};
 #[cfg(test)]
-use crate::fiber::triangles::{
-    shear::{Meeting, Shear},
-    tree::Kind,
-};
-use crate::pages::fetch;
+use crate::fiber::triangles::shear::Meeting;
 use std::cell::RefCell;
 
 /// Nodes one below the other for which there is room that is kept.
@@ -28,14 +24,14 @@ thread_local! {
 }
 
 /// What a search is asked.
-pub(super) struct Query<'a> {
+pub(super) struct Query<'a, 'r> {
     pub(super) tree: &'a Tree,
-    pub(super) line: Line,
+    pub(super) ray: &'r Shear,
     pub(super) limit: f64,
     pub(super) kind: usize,
 }
 
-impl<'a> Query<'a> {
+impl<'a> Query<'a, '_> {
     /// Shows all triangles that the ray may meet to `test`, which gives the new limit if that is to be nearer.
     #[inline(always)]
     pub(super) fn answer(&self, test: impl FnMut(Candidate<'a>) -> Option<f64>) {
@@ -87,13 +83,15 @@ impl<'a> Query<'a> {
     ) {
         let tree = self.tree;
         let nodes = tree.nodes.entries();
-        let mut limit = self.cut(self.limit);
+        let line = Line::new(self.ray, &tree.grid, tree.step, tree.room);
+        let cut = |t: f64| t as f32 * (1.0 + 4.0 * f32::EPSILON) + tree.room;
+        let mut limit = cut(self.limit);
         let mut count = 0;
         let mut next = 0;
         loop {
             if next & LEAF == 0 {
                 let node = &nodes[next as usize];
-                let (met, begins) = node.meets::<L>(&self.line, limit, self.kind);
+                let (met, begins) = node.meets::<L>(&line, limit, self.kind);
                 // Most often one.
                 if met.is_power_of_two() {
                     next = node.child(met.trailing_zeros());
@@ -103,7 +101,24 @@ impl<'a> Query<'a> {
                     count += line_up(met, &L::eight(begins), node, row(aside, count));
                 }
             } else {
-                self.look::<L>((next & !LEAF) as usize, &mut limit, &mut test);
+                let number = (next & !LEAF) as usize;
+                let leaf: &Leaf = &tree.leaves[number];
+                let mut met = leaf.meets::<L>(&line, self.kind);
+                if met != 0 {
+                    tree.labels.fetch(number);
+                }
+                while met != 0 {
+                    let k = met.trailing_zeros() as usize % SIZE;
+                    met &= met - 1;
+                    if let Some(t) = test(Candidate {
+                        leaf,
+                        label: &tree.labels[number].0[k],
+                        place: SIZE * number + k,
+                        step: tree.step,
+                    }) {
+                        limit = cut(t);
+                    }
+                }
             }
             loop {
                 if count == 0 {
@@ -116,41 +131,6 @@ impl<'a> Query<'a> {
             }
             next = aside[count].number() as u32;
         }
-    }
-
-    /// Looks at a leaf.
-    #[inline(always)]
-    fn look<L: Lanes>(
-        &self,
-        number: usize,
-        limit: &mut f32,
-        test: &mut impl FnMut(Candidate<'a>) -> Option<f64>,
-    ) {
-        let leaf: &Leaf = &self.tree.leaves[number];
-        let mut met = leaf.meets::<L>(&self.line, self.kind);
-        if met == 0 {
-            return;
-        }
-        let labels = &self.tree.labels[number];
-        fetch(labels);
-        while met != 0 {
-            let k = met.trailing_zeros() as usize % SIZE;
-            met &= met - 1;
-            if let Some(t) = test(Candidate {
-                leaf,
-                label: &labels.0[k],
-                place: SIZE * number + k,
-                step: self.tree.step,
-            }) {
-                *limit = self.cut(t);
-            }
-        }
-    }
-
-    /// A distance with room for rounding.
-    #[inline(always)]
-    fn cut(&self, t: f64) -> f32 {
-        t as f32 * (1.0 + 4.0 * f32::EPSILON) + self.line.room
     }
 }
 
@@ -188,19 +168,19 @@ fn row(all: &mut [Aside], from: usize) -> &mut [Aside; CHILDREN] {
         .expect("room for a row beyond the last")
 }
 
-/// What a ray meets of some kinds up to a limit, or what of it is nearest, by the search that each processor does that
+/// What a ray meets of a kind up to a limit, or what of it is nearest, by the search that each processor does that
 /// this one can be: the bits of the distance, triangle and side, in order.
 #[cfg(test)]
 pub(super) fn on_each_processor<'a>(
     tree: &'a Tree,
     ray: &Shear,
     limit: f64,
-    kind: Kind,
+    kind: super::Kind,
     nearest: bool,
 ) -> Vec<(&'static str, Vec<(u64, u32, bool)>)> {
     let query = Query {
         tree,
-        line: Line::new(ray, &tree.grid, tree.step, tree.room),
+        ray,
         limit,
         kind: kind.0,
     };

@@ -1,3 +1,4 @@
+use super::ray::Line;
 use super::search::on_each_processor;
 use super::*;
 use crate::fiber::triangles::shear::Meeting;
