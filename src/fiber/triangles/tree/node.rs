@@ -146,12 +146,6 @@ impl Node {
         }
     }
 
-    /// Which children are no leaves, a bit each.
-    #[inline(always)]
-    pub(super) fn inner(&self) -> u32 {
-        (1 << self.inner) - 1
-    }
-
     /// Which of the boxes that hold something of a kind, seen from the side that is asked for, a ray meets, a bit each, and
     /// where it enters each.
     #[inline(always)]

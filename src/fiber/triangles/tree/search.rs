@@ -168,8 +168,12 @@ fn row(all: &mut [Aside], from: usize) -> &mut [Aside; CHILDREN] {
         .expect("room for a row beyond the last")
 }
 
-/// What a ray meets of a kind up to a limit, or what of it is nearest, by the search that each processor does that
-/// this one can be: the bits of the distance, triangle and side, in order.
+/// What a ray meets: the bits of the distance, triangle and side, in order.
+#[cfg(test)]
+pub(super) type Met = Vec<(u64, u32, bool)>;
+
+/// What a ray meets of a kind up to a limit, or what of it is nearest, by the search that each processor does that this
+/// one can be.
 #[cfg(test)]
 pub(super) fn on_each_processor<'a>(
     tree: &'a Tree,
@@ -177,7 +181,7 @@ pub(super) fn on_each_processor<'a>(
     limit: f64,
     kind: super::Kind,
     nearest: bool,
-) -> Vec<(&'static str, Vec<(u64, u32, bool)>)> {
+) -> Vec<(&'static str, Met)> {
     let query = Query {
         tree,
         ray,

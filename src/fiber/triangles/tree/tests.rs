@@ -1,5 +1,5 @@
 use super::ray::Line;
-use super::search::on_each_processor;
+use super::search::{Met, on_each_processor};
 use super::*;
 use crate::fiber::triangles::shear::Meeting;
 use crate::sampling::Rng;
@@ -130,10 +130,7 @@ fn hostile(triangles: &[Corners], i: usize, rng: &mut Rng) -> (DVec3, DVec3) {
     (within - away * dir, dir)
 }
 
-/// What a ray meets of a kind up to a limit: distance, triangle and side.
-type Met = Vec<(u64, u32, bool)>;
-
-/// By a test of every triangle.
+/// What a ray meets, by a test of every triangle.
 fn every(triangles: &[Corners], ray: &Shear, limit: f64, kind: Kind) -> Met {
     let is_of = |label: Label, enters: bool| {
         let side = label.sides[usize::from(!enters)];
