@@ -46,7 +46,9 @@ impl<T: Clone> Table<T> {
     /// Entries put in by `fill`, `count` of them, behind fillers that are there already.
     pub(crate) fn filled(count: usize, filler: &T, fill: impl FnOnce(&mut Vec<T>)) -> Self {
         let each = size_of::<T>();
-        if each * count < LARGE / 4 {
+        // A tree's nodes are fewer than its leaves and read more often: a table a fifth of a large page long gains a
+        // thirtieth of a walk; much shorter ones would take more memory than they hold.
+        if each * count < LARGE / 16 {
             let mut all = Vec::with_capacity(count);
             fill(&mut all);
             return Self { all, first: 0 };
