@@ -11,7 +11,9 @@ const STEPS: f32 = 32_767.0;
 pub fn encode(v: Vec3) -> [i16; 2] {
     let flat = Vec2::new(v.x, v.y) / (v.x.abs() + v.y.abs() + v.z.abs());
     let place = if v.z < 0.0 { fold(flat) } else { flat };
-    (place * STEPS).round().to_array().map(|x| x as i16)
+    // To the nearest, all of them positive for a while.
+    let place = place * STEPS + (STEPS + 0.5);
+    place.to_array().map(|x| (x as i32 - STEPS as i32) as i16)
 }
 
 /// The unit vector of a place.

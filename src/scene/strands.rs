@@ -383,7 +383,7 @@ fn courses(place: Place, joints: &[Vec4], at: &[f32]) -> impl Iterator<Item = Co
         let joint = [0, 1, 2].map(|k| (first + k).min(last));
         Course {
             place,
-            at: joint.map(|j| (AT_STEPS * at[j]).round() as u16),
+            at: joint.map(|j| (AT_STEPS * at[j] + 0.5) as u16),
             tangents: joint.map(|j| octahedral::encode(tangent(joints, j))),
         }
     };

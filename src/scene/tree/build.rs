@@ -300,9 +300,11 @@ fn cut(items: &mut [Item], middles: &Bounds, is_even: bool) -> usize {
     }
     let scale = (0.9999 * BINS as f32) / size.max(Vec3A::splat(f32::MIN_POSITIVE));
     let bins_of = |item: &Item| {
-        let at = (item.bounds.middle() - middles.lo) * scale;
-        // Through i32, which processors convert to at once.
-        at.to_array().map(|at| (at as i32 as usize).min(BINS - 1))
+        // 1.5 times 2^23: what is added to it is rounded to a whole number, in the lowest bits. Conversions that saturate
+        // took a quarter of the builder's time.
+        const WHOLE: f32 = 12_582_912.0;
+        let at = (item.bounds.middle() - middles.lo) * scale - 0.5 + WHOLE;
+        at.to_array().map(|at| at.to_bits() as usize % BINS)
     };
     let sort = |items: &[Item]| {
         let mut bins: Bins = [[(Bounds::NONE, 0); BINS]; 3];

@@ -71,11 +71,12 @@ impl Leaf {
         };
         let [place, width] = leaf.steps();
         for (k, joint) in all.iter().enumerate() {
-            let at = ((joint.xyz() - leaf.corner) / place).round();
+            // To the nearest: none is negative.
+            let at = (joint.xyz() - leaf.corner) / place + 0.5;
             for axis in 0..3 {
                 leaf.joints[JOINTS * axis + k] = at[axis] as u16;
             }
-            leaf.joints[JOINTS * 3 + k] = (joint.w / width).round() as u16;
+            leaf.joints[JOINTS * 3 + k] = (joint.w / width + 0.5) as u16;
         }
         leaf
     }
