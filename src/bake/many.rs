@@ -3,7 +3,7 @@
 use super::Flight;
 use super::entry::{Photon, fly, fly_forked};
 #[cfg(target_arch = "x86_64")]
-use super::packet::Packets;
+use super::packet::Company;
 use crate::fiber::Fiber;
 use crate::table::PHOTON;
 
@@ -11,7 +11,7 @@ use crate::table::PHOTON;
 pub(super) struct Many<'a> {
     fiber: &'a Fiber,
     #[cfg(target_arch = "x86_64")]
-    packets: Option<Packets<'a>>,
+    company: Option<Company<'a>>,
 }
 
 impl<'a> Many<'a> {
@@ -19,7 +19,7 @@ impl<'a> Many<'a> {
         Self {
             fiber,
             #[cfg(target_arch = "x86_64")]
-            packets: Packets::new(fiber),
+            company: Company::new(fiber),
         }
     }
 
@@ -32,8 +32,8 @@ impl<'a> Many<'a> {
         mut book: impl FnMut(u64, Flight),
     ) {
         #[cfg(target_arch = "x86_64")]
-        if let Some(packets) = &self.packets {
-            return packets.fly(photons, forked, max_events, book);
+        if let Some(company) = &self.company {
+            return company.fly(photons, forked, max_events, book);
         }
         for photon in photons {
             if forked {
@@ -46,7 +46,7 @@ impl<'a> Many<'a> {
 }
 
 /// Flies many photons, each as [`fly`] does, or [`fly_forked`] if `forked`, to the bit; where the processor
-/// has AVX-512 and the fiber is clear keratin and air, eight at a time and several times as fast.
+/// has AVX-512 or AVX2 and the fiber is clear keratin and air, eight at a time and up to several times as fast.
 ///
 /// * `book`: gets every flight and its part of a photon in units of 2^-32, in any order.
 pub fn fly_all(

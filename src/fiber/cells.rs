@@ -18,6 +18,8 @@ use super::section::nearest_image;
 use faces::{Block, Fours, Tester};
 use glam::{DVec2, DVec3, IVec3};
 use near::Near;
+#[cfg(target_arch = "x86_64")]
+pub(super) use sixteen::Sixteens;
 
 /// A cell to be put into the store.
 #[derive(Clone, Debug)]
@@ -238,7 +240,7 @@ impl Cells {
     }
 
     /// What is behind a face at a place on it, of any matter or only of one.
-    #[inline]
+    #[inline(always)]
     fn behind<'a>(
         &'a self,
         faces: impl Tester,
@@ -260,7 +262,7 @@ impl Cells {
     }
 
     /// The place of a point on a face, on the side of air or of keratin.
-    #[inline]
+    #[inline(always)]
     fn beside(&self, faces: impl Tester, face: u32, p: DVec3, air: bool) -> Place {
         let place = self.place(self.owners[face as usize / 4], p);
         let link = &self.links[face as usize];

@@ -23,7 +23,7 @@ pub mod unicube;
 pub(crate) fn widest<R>(f: impl FnOnce() -> R) -> R {
     #[cfg(target_arch = "x86_64")]
     if let Some(avx512) = lanes::Avx512::detect() {
-        return avx512.run(f);
+        return lanes::Wide::run(avx512, f);
     }
     f()
 }

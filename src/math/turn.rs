@@ -5,7 +5,7 @@
 //! these do not.
 
 #[cfg(target_arch = "x86_64")]
-use super::lanes::{Avx512, F64x8, U64x8};
+use super::lanes::{F64x8, U64x8, Wide};
 use glam::DVec2;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -53,11 +53,8 @@ pub fn unit_vector_of(bits: u32) -> DVec2 {
 /// * `bits`: below 2^32.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-pub(crate) fn unit_vectors_of(simd: Avx512, bits: U64x8) -> [F64x8; 2] {
-    let index = bits.right::<24>().left::<1>();
-    let table = DIRECTIONS.as_flattened();
-    let x = simd.gather(table, index);
-    let y = simd.gather(table, index.plus(simd.all_bits(1)));
+pub(crate) fn unit_vectors_of<W: Wide>(simd: W, bits: U64x8<W>) -> [F64x8<W>; 2] {
+    let [x, y] = simd.pairs(&DIRECTIONS, bits.right::<24>());
     let low = bits.and(simd.all_bits(0x00ff_ffff));
     let angle = low.minus(simd.all_bits(0x0080_0000)).signed_to_f64() * (TAU / 4_294_967_296.0);
     let a2 = angle * angle;

@@ -1,7 +1,7 @@
 //! A counter-based generator: the stream is a hash of (seed, index), then PCG steps.
 
 #[cfg(target_arch = "x86_64")]
-use crate::math::lanes::{Avx512, F64x8, Mask, U64x8};
+use crate::math::lanes::{F64x8, Mask, U64x8, Wide};
 
 /// Mixes 64 bits into 64 well distributed bits (the finalizer of SplitMix64, Steele et al. 2014).
 #[inline]
@@ -77,16 +77,16 @@ impl Rng {
 /// Eight generators side by side, each with the bits that it has alone.
 #[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy)]
-pub(crate) struct RngLanes {
-    pub(crate) state: U64x8,
-    pub(crate) increment: U64x8,
+pub(crate) struct RngLanes<W: Wide> {
+    pub(crate) state: U64x8<W>,
+    pub(crate) increment: U64x8<W>,
 }
 
 #[cfg(target_arch = "x86_64")]
-impl RngLanes {
+impl<W: Wide> RngLanes<W> {
     /// 32 uniform bits of each in `lanes`; the others stay where they are.
     #[inline(always)]
-    pub(crate) fn bits(&mut self, simd: Avx512, lanes: Mask) -> U64x8 {
+    pub(crate) fn bits(&mut self, simd: W, lanes: Mask<W>) -> U64x8<W> {
         let old = self.state;
         let next = old.times(simd.all_bits(FACTOR)).plus(self.increment);
         self.state = next.or(lanes, old);
@@ -97,7 +97,7 @@ impl RngLanes {
 
     /// Uniform in `[0, 1)`; see [`Rng::uniform`].
     #[inline(always)]
-    pub(crate) fn uniform(&mut self, simd: Avx512, lanes: Mask) -> F64x8 {
+    pub(crate) fn uniform(&mut self, simd: W, lanes: Mask<W>) -> F64x8<W> {
         self.bits(simd, lanes).to_f64() * (1.0 / 4_294_967_296.0)
     }
 }

@@ -1,31 +1,32 @@
 //! Eight photons at rough or smooth dielectric boundaries: [`super::super::microfacet`] lane by lane, with the same
 //! bits.
 
-use super::super::microfacet::{Depth, FLAT, MAX_STEPS, STEEP, Slope, TOP};
-use crate::math::lanes::{Avx512, F64x8, LANES, Mask, Row, U64x8, Vectors};
+use super::super::microfacet::{MAX_STEPS, TOP};
+use super::depths::Depths;
+use crate::math::lanes::{F64x8, LANES, Mask, U64x8, Vectors, Wide};
 use crate::math::turn::unit_vectors_of;
 use crate::sampling::RngLanes;
 
 /// Boundaries that eight photons meet.
 #[derive(Clone, Copy)]
-pub(super) struct Boundaries {
+pub(super) struct Boundaries<W: Wide> {
     /// GGX roughness, more than 0.
-    pub(super) alpha: F64x8,
+    pub(super) alpha: F64x8<W>,
     /// Far index over near index, and the inverse.
-    pub(super) eta: F64x8,
-    pub(super) inverse: F64x8,
+    pub(super) eta: F64x8<W>,
+    pub(super) inverse: F64x8<W>,
 }
 
 /// Fresnel decides.
 #[inline(always)]
-pub(super) fn smooth(
-    simd: Avx512,
-    lanes: Mask,
-    dir: Vectors,
-    n: Vectors,
-    (eta, inverse): (F64x8, F64x8),
-    rng: &mut RngLanes,
-) -> (Vectors, Mask) {
+pub(super) fn smooth<W: Wide>(
+    simd: W,
+    lanes: Mask<W>,
+    dir: Vectors<W>,
+    n: Vectors<W>,
+    (eta, inverse): (F64x8<W>, F64x8<W>),
+    rng: &mut RngLanes<W>,
+) -> (Vectors<W>, Mask<W>) {
     let (zero, one) = (simd.all(0.0), simd.all(1.0));
     let along = dir.dot(n);
     let cos_i = (-along).max(zero).min(one);
@@ -47,33 +48,33 @@ pub(super) fn smooth(
 
 /// See [`crate::math::fresnel::renormalize`].
 #[inline(always)]
-fn renormalized(dir: Vectors) -> Vectors {
+fn renormalized<W: Wide>(dir: Vectors<W>) -> Vectors<W> {
     dir.times(1.5 - 0.5 * dir.dot(dir))
 }
 
 /// Eight walks on microsurfaces, each at a facet. See [`super::super::microfacet::walk`].
 #[derive(Clone)]
-pub(super) struct Walks {
+pub(super) struct Walks<W: Wide> {
     /// Directions of travel, seen from the surface.
-    d: Vectors,
+    d: Vectors<W>,
     /// Those above the surface.
-    above: Mask,
-    depth: Depths,
+    above: Mask<W>,
+    depth: Depths<W>,
     /// How many facets each has met before.
-    steps: U64x8,
+    steps: U64x8<W>,
 }
 
 /// Axes of surfaces.
-pub(super) struct Frames {
-    tangent: Vectors,
-    bitangent: Vectors,
-    normal: Vectors,
+pub(super) struct Frames<W: Wide> {
+    tangent: Vectors<W>,
+    bitangent: Vectors<W>,
+    normal: Vectors<W>,
 }
 
-impl Frames {
+impl<W: Wide> Frames<W> {
     /// The pair of `DVec3::any_orthonormal_pair` to a normal.
     #[inline(always)]
-    pub(super) fn new(simd: Avx512, n: Vectors) -> Self {
+    pub(super) fn new(simd: W, n: Vectors<W>) -> Self {
         let sign = simd.all(1.0).with_sign_of(n.z);
         let a = -1.0 / (sign + n.z);
         let b = n.x * n.y * a;
@@ -90,17 +91,17 @@ const ABOVE: u64 = 1;
 const FLIPPED: u64 = 2;
 const STEPS: u32 = 2;
 
-impl Walks {
+impl<W: Wide> Walks<W> {
     /// Of rays that come from above, and which of them meet a facet.
     #[inline(always)]
     pub(super) fn begin(
-        simd: Avx512,
-        lanes: Mask,
-        dir: Vectors,
-        frames: &Frames,
-        alpha: F64x8,
-        rng: &mut RngLanes,
-    ) -> (Self, Mask) {
+        simd: W,
+        lanes: Mask<W>,
+        dir: Vectors<W>,
+        frames: &Frames<W>,
+        alpha: F64x8<W>,
+        rng: &mut RngLanes<W>,
+    ) -> (Self, Mask<W>) {
         let (zero, one) = (simd.all(0.0), simd.all(1.0));
         let &Frames {
             tangent,
@@ -109,13 +110,13 @@ impl Walks {
         } = frames;
         let mut walks = Self {
             d: Vectors::new(dir.dot(tangent), dir.dot(bitangent), dir.dot(normal)),
-            above: Mask::ALL,
+            above: simd.every(),
             depth: Depths {
                 top: simd.all(TOP),
                 base: one,
                 across: zero,
                 along: one,
-                flipped: Mask::NONE,
+                flipped: simd.none(),
             },
             steps: simd.all_bits(0),
         };
@@ -125,7 +126,7 @@ impl Walks {
 
     /// Walks that were set aside.
     #[inline(always)]
-    pub(super) fn resume(simd: Avx512, columns: [F64x8; LANES]) -> Self {
+    pub(super) fn resume(simd: W, columns: [F64x8<W>; LANES]) -> Self {
         let [x, y, z, top, base, across, along, last] = columns;
         let last = last.bits();
         let none = simd.all_bits(0);
@@ -145,7 +146,7 @@ impl Walks {
 
     /// To be set aside: what [`Walks::resume`] takes.
     #[inline(always)]
-    pub(super) fn columns(&self, simd: Avx512) -> [F64x8; LANES] {
+    pub(super) fn columns(&self, simd: W) -> [F64x8<W>; LANES] {
         let none = simd.all_bits(0);
         let above = simd.all_bits(ABOVE).or(self.above, none);
         let flipped = simd.all_bits(FLIPPED).or(self.depth.flipped, none);
@@ -167,11 +168,11 @@ impl Walks {
     #[inline(always)]
     pub(super) fn step(
         &mut self,
-        simd: Avx512,
-        walking: Mask,
-        boundaries: &Boundaries,
-        rng: &mut RngLanes,
-    ) -> (Mask, Mask) {
+        simd: W,
+        walking: Mask<W>,
+        boundaries: &Boundaries<W>,
+        rng: &mut RngLanes<W>,
+    ) -> (Mask<W>, Mask<W>) {
         let &Boundaries {
             alpha,
             eta,
@@ -188,7 +189,13 @@ impl Walks {
 
     /// Normals of the facets, against the walks. See `bake::microfacet`.
     #[inline(always)]
-    fn normals(&self, simd: Avx512, walking: Mask, alpha: F64x8, rng: &mut RngLanes) -> Vectors {
+    fn normals(
+        &self,
+        simd: W,
+        walking: Mask<W>,
+        alpha: F64x8<W>,
+        rng: &mut RngLanes<W>,
+    ) -> Vectors<W> {
         let (zero, one) = (simd.all(0.0), simd.all(1.0));
         let side = one.or(self.above, -one);
         let w = self.d.times(-side);
@@ -203,7 +210,7 @@ impl Walks {
 
     /// Goes on as a facet has decided.
     #[inline(always)]
-    fn turn(&mut self, simd: Avx512, walking: Mask, d: Vectors, through: Mask) {
+    fn turn(&mut self, simd: W, walking: Mask<W>, d: Vectors<W>, through: Mask<W>) {
         self.d = d.or(walking, self.d);
         self.above = self.above ^ through;
         self.depth.flipped = self.depth.flipped ^ through;
@@ -215,11 +222,11 @@ impl Walks {
     #[inline(always)]
     pub(super) fn fork(
         &self,
-        simd: Avx512,
-        walking: Mask,
-        boundaries: &Boundaries,
-        rng: &mut RngLanes,
-    ) -> ([Self; 2], F64x8) {
+        simd: W,
+        walking: Mask<W>,
+        boundaries: &Boundaries<W>,
+        rng: &mut RngLanes<W>,
+    ) -> ([Self; 2], F64x8<W>) {
         let (zero, one) = (simd.all(0.0), simd.all(1.0));
         let &Boundaries {
             alpha,
@@ -242,7 +249,7 @@ impl Walks {
         let mirrored = renormalized(d.minus(m.times(2.0 * along)));
         let refracted = d.times(inverse).plus(m.times(inverse * -along - cos_t));
         let (mut back, mut on) = (self.clone(), self.clone());
-        back.turn(simd, walking, mirrored, Mask::NONE);
+        back.turn(simd, walking, mirrored, simd.none());
         on.turn(
             simd,
             walking,
@@ -256,12 +263,12 @@ impl Walks {
     #[inline(always)]
     pub(super) fn finish(
         &mut self,
-        simd: Avx512,
-        lanes: Mask,
-        boundaries: &Boundaries,
-        rng: &mut RngLanes,
-    ) -> Mask {
-        let mut all_lost = Mask::NONE;
+        simd: W,
+        lanes: Mask<W>,
+        boundaries: &Boundaries<W>,
+        rng: &mut RngLanes<W>,
+    ) -> Mask<W> {
+        let mut all_lost = simd.none();
         let mut walking = self.free(simd, lanes, boundaries.alpha, rng);
         while walking.any() {
             let lost;
@@ -272,7 +279,13 @@ impl Walks {
     }
 
     #[inline(always)]
-    fn free(&mut self, simd: Avx512, walking: Mask, alpha: F64x8, rng: &mut RngLanes) -> Mask {
+    fn free(
+        &mut self,
+        simd: W,
+        walking: Mask<W>,
+        alpha: F64x8<W>,
+        rng: &mut RngLanes<W>,
+    ) -> Mask<W> {
         let u = rng.uniform(simd, walking);
         let up = self.d.or(self.above, self.d.times(simd.all(-1.0)));
         self.depth.free(simd, walking, up, alpha, u)
@@ -280,7 +293,7 @@ impl Walks {
 
     /// Where the walks go, and which went through.
     #[inline(always)]
-    pub(super) fn leave(&self, frames: &Frames) -> (Vectors, Mask) {
+    pub(super) fn leave(&self, frames: &Frames<W>) -> (Vectors<W>, Mask<W>) {
         let d = self.d;
         let dir = frames
             .tangent
@@ -288,97 +301,5 @@ impl Walks {
             .plus(frames.bitangent.times(d.y))
             .plus(frames.normal.times(d.z));
         (dir, !self.above)
-    }
-}
-
-/// Eight [`Depth`]s.
-#[derive(Clone)]
-struct Depths {
-    top: F64x8,
-    base: F64x8,
-    across: F64x8,
-    along: F64x8,
-    flipped: Mask,
-}
-
-impl Depths {
-    /// The rays that meet the microsurface again, at the depth that is then theirs; the others got
-    /// away. See [`Depth::free`].
-    #[inline(always)]
-    fn free(&mut self, simd: Avx512, lanes: Mask, d: Vectors, alpha: F64x8, u: F64x8) -> Mask {
-        let (zero, one) = (simd.all(0.0), simd.all(1.0));
-        let across = alpha * alpha * (d.x * d.x + d.y * d.y);
-        let along = d.z * d.z;
-        let upward = d.z.ge(simd.all(FLAT));
-        let gain = 4.0 * along * u + across;
-        let plain = (self.top * self.base * gain).gt(across);
-        let whole = 4.0 * self.along + self.across;
-        let least = whole - self.top * (whole - 4.0 * self.along * (1.0 - self.base));
-        let turned = (least * gain).gt(across * whole);
-        let gone = upward & ((self.flipped & turned) | (!self.flipped & plain));
-        let mut walking = lanes & !gone;
-        let downward = walking & d.z.le(simd.all(-FLAT));
-        // What takes powers: shares below a place that is not the start, and rays up that no bound decides.
-        let start = self.base.is(one) & !self.flipped;
-        let slow = walking & (upward | (downward & !start));
-        let quick = downward & start;
-        let steep = d.z.lt(simd.all(-STEEP));
-        let old = [self.top, self.base, self.across, self.along];
-        self.top = (u * self.top).or(quick & steep, self.top);
-        self.base = (1.0 - u).or(quick & !steep, self.base);
-        self.across = zero.or(quick & steep, across.or(quick, self.across));
-        self.along = one.or(quick & steep, along.or(quick, self.along));
-        if slow.any() {
-            let old = [old[0].row(), old[1].row(), old[2].row(), old[3].row()];
-            let rays = [d.z.row(), across.row(), along.row(), u.row()];
-            let gone = self.by_power(simd, slow, &old, &rays);
-            walking = walking & !gone;
-        }
-        walking
-    }
-
-    /// What takes powers, one ray after another; those that get away.
-    ///
-    /// * `old`: depths before. * `rays`: cosine, slope and random number of each.
-    #[inline(always)]
-    fn by_power(&mut self, simd: Avx512, slow: Mask, old: &[Row; 4], rays: &[Row; 4]) -> Mask {
-        let mut gone = Mask::NONE;
-        let mut new = [
-            self.top.row(),
-            self.base.row(),
-            self.across.row(),
-            self.along.row(),
-        ];
-        for lane in slow.lanes() {
-            let [top, base, across, along] = old.map(|row| row.0[lane]);
-            let depth = Depth {
-                top,
-                base,
-                slope: Slope { across, along },
-                flipped: self.flipped.has(lane),
-            };
-            let [z, across, along, u] = rays.map(|row| row.0[lane]);
-            let here = Mask(1 << lane);
-            match depth.free_along(z, Slope { across, along }, u) {
-                Some(depth) => {
-                    let Slope { across, along } = depth.slope;
-                    let parts = [depth.top, depth.base, across, along];
-                    for (row, part) in new.iter_mut().zip(parts) {
-                        row.0[lane] = part;
-                    }
-                    self.flipped = if depth.flipped {
-                        self.flipped | here
-                    } else {
-                        self.flipped & !here
-                    };
-                }
-                None => gone = gone | here,
-            }
-        }
-        self.top = simd.load(&new[0]);
-        self.base = simd.load(&new[1]);
-        self.across = simd.load(&new[2]);
-        self.along = simd.load(&new[3]);
-        gone
     }
 }

@@ -7,13 +7,13 @@ use super::super::{End, Flight};
 use super::Packets;
 use super::facets::{self, Boundaries, Frames, Walks};
 use super::ways::{Group, Lists, Next, UNDER_WAY, Way, after};
-use crate::math::lanes::{F64x8, LANES, Mask, Row, Vectors, transposed};
+use crate::math::lanes::{F64x8, LANES, Mask, Row, Vectors, Wide};
 use crate::sampling::{Rng, RngLanes};
 use crate::table::PHOTON;
 use glam::DVec3;
 
-pub(super) struct Flock<'a> {
-    pub(super) packets: &'a Packets<'a>,
+pub(super) struct Flock<'a, W> {
+    pub(super) packets: &'a Packets<'a, W>,
     pub(super) max_events: u32,
     pub(super) ways: Vec<Way>,
     /// Places of ways that have ended.
@@ -21,8 +21,8 @@ pub(super) struct Flock<'a> {
     pub(super) lists: Lists,
 }
 
-impl<'a> Flock<'a> {
-    pub(super) fn new(packets: &'a Packets<'a>, max_events: u32) -> Self {
+impl<'a, W: Wide> Flock<'a, W> {
+    pub(super) fn new(packets: &'a Packets<'a, W>, max_events: u32) -> Self {
         Self {
             packets,
             max_events,
@@ -136,28 +136,24 @@ impl<'a> Flock<'a> {
         let frames = Frames::new(simd, n);
         let dir = Vectors::new(dx, dy, dz);
         let alpha = boundaries.alpha;
-        let (walks, met) = Walks::begin(simd, group.lanes, dir, &frames, alpha, &mut rng);
+        let (walks, met) = Walks::begin(simd, group.lanes(simd), dir, &frames, alpha, &mut rng);
         let ([mut back, mut on], share) = walks.fork(simd, met, &boundaries, &mut rng);
         let mut again = rng;
         let lost = back.finish(simd, met, &boundaries, &mut again)
             | on.finish(simd, met, &boundaries, &mut rng);
-        let both = [back.leave(&frames), on.leave(&frames)];
-        let [back, on] = both.map(|(d, through)| ([d.x.row(), d.y.row(), d.z.row()], through));
+        let back = Turns::new(back.leave(&frames));
+        let on = Turns::new(on.leave(&frames));
+        let (lost, met) = (lost.bits(), met.bits());
         let (share, state) = (share.row(), rng.state.array());
-        for lane in group.lanes.lanes() {
-            let id = group.ids[lane];
-            if lost.has(lane) || !met.has(lane) {
+        for (lane, id) in group.members() {
+            if (lost | !met) >> lane & 1 != 0 {
                 self.fork_alone(id);
                 continue;
             }
-            let [reflected, transmitted] = [&back, &on].map(|(dir, through)| Turn {
-                dir: DVec3::from_array([0, 1, 2].map(|k| dir[k].0[lane])),
-                transmitted: through.has(lane),
-            });
             let both = Fork {
                 reflectance: share.0[lane],
-                reflected,
-                transmitted,
+                reflected: back.at(lane),
+                transmitted: on.at(lane),
             };
             let [_, increment] = self.ways[id].rng().parts();
             self.forks(id, &both, &Rng::of_parts([state[lane], increment]));
@@ -211,34 +207,39 @@ impl<'a> Flock<'a> {
             state: state.bits(),
             increment: increment.bits(),
         };
-        let (mut walking, mut lost) = (Mask::NONE, Mask::NONE);
+        let (mut walking, mut lost) = (simd.none(), simd.none());
         let mut walks = None;
         let (dir, transmitted) = if kind == Next::Smooth {
             let ratio = (boundaries.eta, boundaries.inverse);
-            facets::smooth(simd, group.lanes, old, n, ratio, &mut rng)
+            facets::smooth(simd, group.lanes(simd), old, n, ratio, &mut rng)
         } else {
             let frames = Frames::new(simd, n);
             let mut all = if kind == Next::Rough {
-                let (all, met) =
-                    Walks::begin(simd, group.lanes, old, &frames, boundaries.alpha, &mut rng);
+                let (all, met) = Walks::begin(
+                    simd,
+                    group.lanes(simd),
+                    old,
+                    &frames,
+                    boundaries.alpha,
+                    &mut rng,
+                );
                 walking = met;
                 all
             } else {
-                walking = group.lanes;
+                walking = group.lanes(simd);
                 let ways = &self.ways;
                 Walks::resume(simd, simd.columns(group.ids.map(|id| &ways[id].walk)))
             };
             (walking, lost) = all.step(simd, walking, &boundaries, &mut rng);
             let (dir, transmitted) = all.leave(&frames);
             if walking.any() {
-                walks = Some(transposed(all.columns(simd)));
+                walks = Some(simd.transposed(all.columns(simd)));
             }
             (old.or(walking, dir), transmitted)
         };
         let state = rng.state.numbers();
         self.set_lines(group, [x, y, z, dir.x, dir.y, dir.z, state, increment]);
-        for lane in group.lanes.lanes() {
-            let id = group.ids[lane];
+        for (lane, id) in group.members() {
             let way = &mut self.ways[id];
             if let Some(walks) = &walks
                 && walking.has(lane)
@@ -259,7 +260,7 @@ impl<'a> Flock<'a> {
 
     /// What a group meets: normals and boundaries.
     #[inline(always)]
-    fn boundaries(&self, group: &Group) -> (Vectors, Boundaries) {
+    fn boundaries(&self, group: &Group) -> (Vectors<W>, Boundaries<W>) {
         let Packets {
             simd,
             alpha,
@@ -279,16 +280,16 @@ impl<'a> Flock<'a> {
     }
 
     #[inline(always)]
-    pub(super) fn lines(&self, group: &Group) -> [F64x8; LANES] {
+    pub(super) fn lines(&self, group: &Group) -> [F64x8<W>; LANES] {
         let lines = group.ids.map(|id| &self.ways[id].line);
         self.packets.simd.columns(lines)
     }
 
     #[inline(always)]
-    fn set_lines(&mut self, group: &Group, lines: [F64x8; LANES]) {
-        let rows = transposed(lines);
-        for lane in group.lanes.lanes() {
-            self.ways[group.ids[lane]].line = rows[lane].row();
+    fn set_lines(&mut self, group: &Group, lines: [F64x8<W>; LANES]) {
+        let rows = self.packets.simd.transposed(lines);
+        for (lane, id) in group.members() {
+            self.ways[id].line = rows[lane].row();
         }
     }
 
@@ -305,6 +306,31 @@ impl<'a> Flock<'a> {
         match way.later.take() {
             Some(branch) => self.begin(id, branch),
             None => self.free.push(id),
+        }
+    }
+}
+
+/// Eight [`Turn`]s in memory.
+struct Turns {
+    dir: [Row; 3],
+    transmitted: u8,
+}
+
+impl Turns {
+    #[inline(always)]
+    fn new<W: Wide>((dir, transmitted): (Vectors<W>, Mask<W>)) -> Self {
+        Self {
+            dir: [dir.x.row(), dir.y.row(), dir.z.row()],
+            transmitted: transmitted.bits(),
+        }
+    }
+
+    #[inline(always)]
+    fn at(&self, lane: usize) -> Turn {
+        let [x, y, z] = &self.dir;
+        Turn {
+            dir: DVec3::new(x.0[lane], y.0[lane], z.0[lane]),
+            transmitted: self.transmitted >> lane & 1 != 0,
         }
     }
 }

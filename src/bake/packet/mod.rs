@@ -4,6 +4,7 @@
 //! side. Which photons are together is chance, and each has the path, to the bit, that it has alone:
 //! its random numbers are its own and every lane rounds as plain numbers do.
 
+mod depths;
 mod facets;
 mod flock;
 mod search;
@@ -14,7 +15,7 @@ mod ways;
 use super::Flight;
 use super::entry::Photon;
 use crate::fiber::{Fiber, Optics, PacketShell, Part, Region};
-use crate::math::lanes::{Avx512, Row};
+use crate::math::lanes::{Avx2, Avx512, Row, Wide};
 use flock::Flock;
 
 /// Boundaries that a photon may meet, each from both sides: the second of a pair from inside.
@@ -27,11 +28,46 @@ const SIDES: [(Part, Region, Region); 6] = [
     (Part::Void, Region::Void, Region::Cortex),
 ];
 
+/// A fiber whose photons fly in company, by the instruction set that the processor has.
+pub(super) struct Company<'a>(With<'a>);
+
+enum With<'a> {
+    Avx512(Packets<'a, Avx512>),
+    Avx2(Packets<'a, Avx2>),
+}
+
+impl<'a> Company<'a> {
+    /// `None` where the processor has neither set, or photons of the fiber fly alone: see [`Packets::new`].
+    pub(super) fn new(fiber: &'a Fiber) -> Option<Self> {
+        let packets = match Avx512::detect() {
+            Some(simd) => With::Avx512(Packets::new(simd, fiber)?),
+            None => With::Avx2(Packets::new(Avx2::detect()?, fiber)?),
+        };
+        Some(Self(packets))
+    }
+
+    /// Flies photons; see [`super::entry::fly`] and [`super::entry::fly_forked`].
+    ///
+    /// * `book`: gets what becomes of each, or of each branch, and its part of the photon, in any order.
+    pub(super) fn fly(
+        &self,
+        photons: impl Iterator<Item = Photon>,
+        forked: bool,
+        max_events: u32,
+        book: impl FnMut(u64, Flight),
+    ) {
+        match &self.0 {
+            With::Avx512(packets) => packets.fly(photons, forked, max_events, book),
+            With::Avx2(packets) => packets.fly(photons, forked, max_events, book),
+        }
+    }
+}
+
 /// A fiber all of whose boundaries are dielectrics between clear media, for eight photons at a time.
-pub(super) struct Packets<'a> {
-    simd: Avx512,
+struct Packets<'a, W> {
+    simd: W,
     fiber: &'a Fiber,
-    shell: PacketShell<'a>,
+    shell: PacketShell<'a, W>,
     has_voids: bool,
     has_even_pigment: bool,
     /// By side: roughness, index over index, the inverse.
@@ -40,11 +76,10 @@ pub(super) struct Packets<'a> {
     inverse: Row,
 }
 
-impl<'a> Packets<'a> {
-    /// `None` where the processor lacks AVX-512 or the fiber has something that is followed one photon at a
-    /// time: a mesh, other boundaries than dielectrics, media that scatter or absorb.
-    pub(super) fn new(fiber: &'a Fiber) -> Option<Self> {
-        let simd = Avx512::detect()?;
+impl<'a, W: Wide> Packets<'a, W> {
+    /// `None` where the fiber has something that is followed one photon at a time: a mesh, other boundaries than
+    /// dielectrics, media that scatter or absorb.
+    fn new(simd: W, fiber: &'a Fiber) -> Option<Self> {
         let clear = |&(_, near, far): &(Part, Region, Region)| {
             let medium = fiber.medium(near);
             medium.scattering_per_um == 0.0
@@ -76,10 +111,8 @@ impl<'a> Packets<'a> {
         Some(packets)
     }
 
-    /// Flies photons; see [`super::entry::fly`] and [`super::entry::fly_forked`].
-    ///
-    /// * `book`: gets what becomes of each, or of each branch, and its part of the photon, in any order.
-    pub(super) fn fly(
+    /// See [`Company::fly`].
+    fn fly(
         &self,
         photons: impl Iterator<Item = Photon>,
         forked: bool,

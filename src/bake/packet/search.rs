@@ -5,17 +5,17 @@ use super::super::{End, Flight};
 use super::flock::{Flock, line};
 use super::ways::{Group, Next};
 use crate::fiber::{Hits, Rays, Region};
-use crate::math::lanes::{F64x8, LANES, Mask, Row, Vectors, transposed};
+use crate::math::lanes::{F64x8, LANES, Mask, Row, Vectors, Wide};
 use crate::table::PHOTON;
 use glam::DVec3;
 
 /// Lines and boundaries of photons at a boundary, a photon each.
-struct Went {
-    lines: [F64x8; LANES],
-    mets: [F64x8; LANES],
+struct Went<W: Wide> {
+    lines: [F64x8<W>; LANES],
+    mets: [F64x8<W>; LANES],
 }
 
-impl Flock<'_> {
+impl<W: Wide> Flock<'_, W> {
     /// From far away to the fiber.
     #[inline(always)]
     pub(super) fn enter(
@@ -27,8 +27,7 @@ impl Flock<'_> {
         let rays = self.rays(group);
         let hits = self.packets.shell.arrive(&rays);
         let went = self.go(&rays, group, &hits, 0);
-        for lane in group.lanes.lanes() {
-            let id = group.ids[lane];
+        for (lane, id) in group.members() {
             let way = &mut self.ways[id];
             if hits.met.has(lane) {
                 (way.line, way.met) = (went.lines[lane].row(), went.mets[lane].row());
@@ -74,8 +73,7 @@ impl Flock<'_> {
             Region::Cortex => self.pigment_um(&rays, hits.met, hits.t).row(),
             _ => Row::default(),
         };
-        for lane in group.lanes.lanes() {
-            let id = group.ids[lane];
+        for (lane, id) in group.members() {
             let way = &mut self.ways[id];
             if hits.met.has(lane) {
                 if way.events >= self.max_events {
@@ -106,8 +104,7 @@ impl Flock<'_> {
         let simd = self.packets.simd;
         let (mut met, mut t) = (0, Row::default());
         let (mut gradients, mut states) = ([Row::default(); 3], Row::default());
-        for lane in group.lanes.lanes() {
-            let id = group.ids[lane];
+        for (lane, id) in group.members() {
             let way = &self.ways[id];
             if way.events >= self.max_events {
                 self.end(id, End::Truncated, book);
@@ -134,7 +131,7 @@ impl Flock<'_> {
             return;
         }
         let rays = Rays {
-            lanes: Mask(met),
+            lanes: simd.lanes(met),
             ..self.rays(group)
         };
         let gradient = Vectors::new(
@@ -160,13 +157,13 @@ impl Flock<'_> {
 
     /// The rays of a group.
     #[inline(always)]
-    fn rays(&self, group: &Group) -> Rays {
+    fn rays(&self, group: &Group) -> Rays<W> {
         let simd = self.packets.simd;
         let [x, y, z, dx, dy, dz, ..] = self.lines(group);
         let ways = &self.ways;
         let [.., from, _, _, _] = simd.columns(group.ids.map(|id| &ways[id].met));
         Rays {
-            lanes: group.lanes,
+            lanes: group.lanes(simd),
             origin: Vectors::new(x, y, z),
             dir: Vectors::new(dx, dy, dz),
             from: from.bits(),
@@ -177,7 +174,7 @@ impl Flock<'_> {
     ///
     /// * `side`: of [`super::SIDES`], two more at a riser.
     #[inline(always)]
-    fn go(&self, rays: &Rays, group: &Group, hits: &Hits, side: u64) -> Went {
+    fn go(&self, rays: &Rays<W>, group: &Group, hits: &Hits<W>, side: u64) -> Went<W> {
         let simd = self.packets.simd;
         let [.., state, increment] = self.lines(group);
         let (p, d) = (rays.origin.plus(rays.dir.times(hits.t)), rays.dir);
@@ -187,14 +184,14 @@ impl Flock<'_> {
             .numbers();
         let (n, zero, from) = (hits.normal, simd.all(0.0), hits.state.numbers());
         Went {
-            lines: transposed([p.x, p.y, p.z, d.x, d.y, d.z, state, increment]),
-            mets: transposed([n.x, n.y, n.z, side, from, zero, zero, zero]),
+            lines: simd.transposed([p.x, p.y, p.z, d.x, d.y, d.z, state, increment]),
+            mets: simd.transposed([n.x, n.y, n.z, side, from, zero, zero, zero]),
         }
     }
 
     /// Ways through the cortex times the pigment along them.
     #[inline(always)]
-    fn pigment_um(&self, rays: &Rays, lanes: Mask, t: F64x8) -> F64x8 {
+    fn pigment_um(&self, rays: &Rays<W>, lanes: Mask<W>, t: F64x8<W>) -> F64x8<W> {
         let packets = self.packets;
         if packets.has_even_pigment || !lanes.any() {
             return t;

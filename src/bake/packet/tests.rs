@@ -4,6 +4,7 @@ use super::super::entry::{Photon, Sides, fly, fly_forked};
 use super::super::{End, Flight};
 use super::Packets;
 use crate::fiber::Fiber;
+use crate::math::lanes::{Avx2, Avx512, Wide};
 use crate::table::PHOTON;
 
 /// A flight as whole numbers, to be sorted.
@@ -31,7 +32,22 @@ fn photons(count: u64) -> impl Iterator<Item = Photon> {
 }
 
 #[test]
-fn photons_in_company_fly_as_they_do_alone() {
+fn photons_in_company_fly_as_they_do_alone_with_avx512() {
+    match Avx512::detect() {
+        Some(simd) => fly_in_company_and_alone(simd),
+        None => println!("not on this processor"),
+    }
+}
+
+#[test]
+fn photons_in_company_fly_as_they_do_alone_with_avx2() {
+    match Avx2::detect() {
+        Some(simd) => fly_in_company_and_alone(simd),
+        None => println!("not on this processor"),
+    }
+}
+
+fn fly_in_company_and_alone<W: Wide>(simd: W) {
     for (name, count) in [
         ("human", 6000),
         ("red-fox", 4000),
@@ -42,7 +58,7 @@ fn photons_in_company_fly_as_they_do_alone() {
         for class in &species.classes {
             let station = class.stations.last().unwrap();
             let fiber = Fiber::build(&station.structure, 0).unwrap();
-            let Some(packets) = Packets::new(&fiber) else {
+            let Some(packets) = Packets::new(simd, &fiber) else {
                 println!("not here: {name}");
                 continue;
             };

@@ -4,7 +4,7 @@ use super::super::entry::Entry;
 use super::super::microfacet::Turn;
 use super::SIDES;
 use crate::fiber::{Hit, HitState, Region};
-use crate::math::lanes::{LANES, Mask, Row};
+use crate::math::lanes::{LANES, Mask, Row, Wide};
 use crate::sampling::Rng;
 use glam::DVec3;
 
@@ -48,7 +48,21 @@ pub(super) struct Lists {
 /// Photons that do something together: as many lanes as there are, the others repeat the first.
 pub(super) struct Group {
     pub(super) ids: [usize; LANES],
-    pub(super) lanes: Mask,
+    pub(super) count: usize,
+}
+
+impl Group {
+    /// Those in use, with the photons in them.
+    #[inline(always)]
+    pub(super) fn members(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.ids.into_iter().take(self.count).enumerate()
+    }
+
+    /// The lanes in use.
+    #[inline(always)]
+    pub(super) fn lanes<W: Wide>(&self, simd: W) -> Mask<W> {
+        simd.first(self.count)
+    }
 }
 
 impl Lists {
@@ -95,10 +109,7 @@ impl Lists {
         for (k, id) in ids.iter_mut().enumerate().take(taken) {
             *id = usize::from(list[*count + k]);
         }
-        Group {
-            ids,
-            lanes: Mask::first(taken),
-        }
+        Group { ids, count: taken }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::faces::{Block, Fours, Tester};
 use super::{Cells, Room};
-use crate::math::lanes::{Avx512, F32x16, Singles};
+use crate::math::lanes::{F32x16, Singles, Wide};
 use glam::{Vec3, Vec4};
 
 /// The faces of four blocks, first those in their first lanes: of two that are met at once the one is taken
@@ -35,14 +35,18 @@ impl Faces {
     }
 
     #[inline(always)]
-    fn dot(&self, simd: Avx512, v: Vec3) -> F32x16 {
+    fn dot<W: Wide>(&self, simd: W, v: Vec3) -> F32x16<W> {
         simd.load_singles(&self.x) * simd.all_single(v.x)
             + simd.load_singles(&self.y) * simd.all_single(v.y)
             + simd.load_singles(&self.z) * simd.all_single(v.z)
     }
 }
 
-impl Avx512 {
+/// Sixteen faces at a time.
+#[derive(Clone, Copy)]
+pub(in crate::fiber) struct Sixteens<W>(pub(in crate::fiber) W);
+
+impl<W: Wide> Sixteens<W> {
     #[inline(always)]
     fn faces<'a>(self, cells: &'a Cells, room: &Room) -> &'a [Faces] {
         let count = (room.end - room.first).div_ceil(4);
@@ -65,7 +69,7 @@ struct Nearest(f32, usize);
 
 impl Nearest {
     #[inline(always)]
-    fn take(&mut self, room: &Room, k: usize, values: F32x16) {
+    fn take<W: Wide>(&mut self, room: &Room, k: usize, values: F32x16<W>) {
         let (value, lane) = values.least();
         if value < self.0 {
             let block = room.first as usize + 4 * k + lane % 4;
@@ -74,7 +78,7 @@ impl Nearest {
     }
 }
 
-impl Tester for Avx512 {
+impl<W: Wide> Tester for Sixteens<W> {
     #[inline(always)]
     fn void(
         self,
@@ -87,15 +91,16 @@ impl Tester for Avx512 {
         if room.is_small() {
             return Fours.void(cells, room, at, dir, least);
         }
-        let (zero, none) = (self.all_single(0.0), self.all_single(f32::INFINITY));
+        let simd = self.0;
+        let (zero, none) = (simd.all_single(0.0), simd.all_single(f32::INFINITY));
         let mut enter = Nearest(f32::INFINITY, 4 * room.first as usize);
         let mut leave = f32::INFINITY;
         for (k, faces) in self.faces(cells, room).iter().enumerate() {
-            let rate = faces.dot(self, dir);
-            let t = (self.load_singles(&faces.void) - faces.dot(self, at)) / rate;
-            leave = leave.min(t.or(zero.lt(rate), none).least().0);
+            let rate = faces.dot(simd, dir);
+            let t = (simd.load_singles(&faces.void) - faces.dot(simd, at)) / rate;
+            leave = leave.min(t.where_less(zero, rate, none).least().0);
             // The greatest is the least of the negative.
-            let back = (zero - t).or(rate.lt(zero), none);
+            let back = (zero - t).where_less(rate, zero, none);
             enter.take(room, k, back);
         }
         let Nearest(enter, slot) = enter;
@@ -107,13 +112,14 @@ impl Tester for Avx512 {
         if room.is_small() {
             return Fours.way_out(cells, room, at, dir, whole);
         }
-        let (zero, none) = (self.all_single(0.0), self.all_single(f32::INFINITY));
+        let simd = self.0;
+        let (zero, none) = (simd.all_single(0.0), simd.all_single(f32::INFINITY));
         let mut nearest = Nearest(f32::INFINITY, 4 * room.first as usize);
         for (k, faces) in self.faces(cells, room).iter().enumerate() {
-            let rate = faces.dot(self, dir);
-            let offset = self.load_singles(if whole { &faces.cell } else { &faces.void });
-            let t = (offset - faces.dot(self, at)) / rate;
-            nearest.take(room, k, t.or(zero.lt(rate), none));
+            let rate = faces.dot(simd, dir);
+            let offset = simd.load_singles(if whole { &faces.cell } else { &faces.void });
+            let t = (offset - faces.dot(simd, at)) / rate;
+            nearest.take(room, k, t.where_less(zero, rate, none));
         }
         (nearest.0, nearest.1)
     }
@@ -123,9 +129,10 @@ impl Tester for Avx512 {
         if room.is_small() {
             return Fours.room_left(cells, room, at);
         }
+        let simd = self.0;
         let mut nearest = Nearest(f32::INFINITY, 4 * room.first as usize);
         for (k, faces) in self.faces(cells, room).iter().enumerate() {
-            let left = self.load_singles(&faces.cell) - faces.dot(self, at);
+            let left = simd.load_singles(&faces.cell) - faces.dot(simd, at);
             nearest.take(room, k, left);
         }
         (nearest.0, nearest.1)

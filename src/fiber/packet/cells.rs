@@ -3,7 +3,7 @@
 use super::super::march::Side;
 use super::super::scales::seek::{ANGLE_STEPS, Z_STEPS};
 use super::super::scales::{Scales, Sector, Strip};
-use crate::math::lanes::{Avx512, F64x8, LANES, Mask, Row, U64x8, Vectors};
+use crate::math::lanes::{F64x8, LANES, Mask, Row, U64x8, Vectors, Wide};
 
 /// Sectors and strips as lines of the cache.
 #[derive(Clone, Debug)]
@@ -35,30 +35,30 @@ impl Shell {
 }
 
 /// A number on both half planes of a sector.
-pub(super) type Pair = [F64x8; 2];
+pub(super) type Pair<W> = [F64x8<W>; 2];
 
 /// Cells, each with what is in the tables of it.
-pub(super) struct Cells<'a> {
-    simd: Avx512,
+pub(super) struct Cells<'a, W: Wide> {
+    simd: W,
     scales: &'a Scales,
-    pub(super) sector: U64x8,
-    pub(super) strip: U64x8,
-    pub(super) shift: F64x8,
+    pub(super) sector: U64x8<W>,
+    pub(super) strip: U64x8<W>,
+    pub(super) shift: F64x8<W>,
     /// Cosines and sines of the planes.
-    pub(super) cos: Pair,
-    pub(super) sin: Pair,
-    first: U64x8,
-    count: U64x8,
-    pub(super) begin: Pair,
-    pub(super) end: Pair,
-    pub(super) height: Pair,
-    pub(super) slope: Pair,
+    pub(super) cos: Pair<W>,
+    pub(super) sin: Pair<W>,
+    first: U64x8<W>,
+    count: U64x8<W>,
+    pub(super) begin: Pair<W>,
+    pub(super) end: Pair<W>,
+    pub(super) height: Pair<W>,
+    pub(super) slope: Pair<W>,
 }
 
-impl<'a> Cells<'a> {
+impl<'a, W: Wide> Cells<'a, W> {
     /// The cells of strips of sectors, in the first period.
     #[inline(always)]
-    pub(super) fn new(simd: Avx512, scales: &'a Scales, sector: U64x8, strip: U64x8) -> Self {
+    pub(super) fn new(simd: W, scales: &'a Scales, sector: U64x8<W>, strip: U64x8<W>) -> Self {
         let zero = simd.all(0.0);
         let mut cells = Self {
             simd,
@@ -82,7 +82,7 @@ impl<'a> Cells<'a> {
 
     /// The cells that hold points. See [`Scales::locate`].
     #[inline(always)]
-    pub(super) fn locate(simd: Avx512, scales: &'a Scales, p: Vectors) -> Self {
+    pub(super) fn locate(simd: W, scales: &'a Scales, p: Vectors<W>) -> Self {
         let x = p.x / (p.x.abs() + p.y.abs());
         let pseudo = 2.0 - (1.0 + x).with_sign_of(p.y);
         let angle = (pseudo * (ANGLE_STEPS as f64 / 4.0)).whole().array();
@@ -115,7 +115,7 @@ impl<'a> Cells<'a> {
         cells.strip = simd.load(&Row(strips)).bits();
         cells.look_up_strips();
         let u = cells.across(p);
-        cells.settle(Mask::ALL, u, p.z);
+        cells.settle(simd.every(), u, p.z);
         cells
     }
 
@@ -141,7 +141,7 @@ impl<'a> Cells<'a> {
 
     /// Into the cells above; the strips are still to be looked up.
     #[inline(always)]
-    pub(super) fn up(&mut self, lanes: Mask) {
+    pub(super) fn up(&mut self, lanes: Mask<W>) {
         let (zero, one) = (self.simd.all_bits(0), self.simd.all_bits(1));
         let next = self.strip.plus(one);
         let over = next.is(self.count);
@@ -151,7 +151,7 @@ impl<'a> Cells<'a> {
 
     /// Into the cells below; the strips are still to be looked up.
     #[inline(always)]
-    pub(super) fn down(&mut self, lanes: Mask) {
+    pub(super) fn down(&mut self, lanes: Mask<W>) {
         let (zero, one) = (self.simd.all_bits(0), self.simd.all_bits(1));
         let under = self.strip.is(zero);
         let next = self.count.or(under, self.strip).minus(one);
@@ -162,7 +162,7 @@ impl<'a> Cells<'a> {
     /// Into the sectors beyond the second plane (`second`) or the first; strips are those that as a rule go
     /// on there, sectors and strips are still to be looked up.
     #[inline(always)]
-    pub(super) fn aside(&mut self, lanes: Mask, second: Mask) {
+    pub(super) fn aside(&mut self, lanes: Mask<W>, second: Mask<W>) {
         let (index, sector) = (self.first.plus(self.strip).array(), self.sector.array());
         let (mut sectors, mut strips) = (self.sector.numbers().row(), self.strip.numbers().row());
         for lane in lanes.lanes() {
@@ -178,7 +178,7 @@ impl<'a> Cells<'a> {
 
     /// From near strips to those that hold `z` at `u`. See [`Scales::settle`].
     #[inline(always)]
-    pub(super) fn settle(&mut self, lanes: Mask, u: F64x8, z: F64x8) {
+    pub(super) fn settle(&mut self, lanes: Mask<W>, u: F64x8<W>, z: F64x8<W>) {
         loop {
             let above = lanes & (z - self.shift).gt(at(self.end, u));
             if !above.any() {
@@ -199,20 +199,20 @@ impl<'a> Cells<'a> {
 
     /// Distance from the first or the second plane.
     #[inline(always)]
-    pub(super) fn distance(&self, plane: usize, x: F64x8, y: F64x8) -> F64x8 {
+    pub(super) fn distance(&self, plane: usize, x: F64x8<W>, y: F64x8<W>) -> F64x8<W> {
         self.cos[plane] * y - self.sin[plane] * x
     }
 
     /// Positions between the half planes.
     #[inline(always)]
-    pub(super) fn across(&self, p: Vectors) -> F64x8 {
+    pub(super) fn across(&self, p: Vectors<W>) -> F64x8<W> {
         let a = self.distance(0, p.x, p.y);
         a / (a - self.distance(1, p.x, p.y))
     }
 
     /// `1 + E` at `u` and the rays' `z`.
     #[inline(always)]
-    pub(super) fn radius(&self, u: F64x8, z: F64x8) -> F64x8 {
+    pub(super) fn radius(&self, u: F64x8<W>, z: F64x8<W>) -> F64x8<W> {
         let z = z - self.shift;
         let e0 = self.height[0] + self.slope[0] * z;
         let e1 = self.height[1] + self.slope[1] * z;
@@ -221,7 +221,7 @@ impl<'a> Cells<'a> {
 
     /// `u` and its derivatives by x and y.
     #[inline(always)]
-    fn across_gradient(&self, p: Vectors) -> (F64x8, Pair) {
+    fn across_gradient(&self, p: Vectors<W>) -> (F64x8<W>, Pair<W>) {
         let a = self.distance(0, p.x, p.y);
         let w = a - self.distance(1, p.x, p.y);
         let (wx, wy) = (self.sin[1] - self.sin[0], self.cos[0] - self.cos[1]);
@@ -235,7 +235,7 @@ impl<'a> Cells<'a> {
 
     /// See `Scales::is_clear`.
     #[inline(always)]
-    pub(super) fn is_clear(&self, rho2: F64x8, side: Side) -> Mask {
+    pub(super) fn is_clear(&self, rho2: F64x8<W>, side: Side) -> Mask<W> {
         match side {
             Side::Inside => rho2.le(self.simd.all(self.scales.within2)),
             Side::Outside => rho2.ge(self.simd.all(self.scales.beyond2)),
@@ -244,7 +244,7 @@ impl<'a> Cells<'a> {
 
     /// See [`Scales::face_gradient`].
     #[inline(always)]
-    pub(super) fn face_gradient(&self, p: Vectors) -> Vectors {
+    pub(super) fn face_gradient(&self, p: Vectors<W>) -> Vectors<W> {
         let (u, du) = self.across_gradient(p);
         let z = p.z - self.shift;
         let (height, slope) = (self.height, self.slope);
@@ -259,7 +259,7 @@ impl<'a> Cells<'a> {
 
     /// See [`Scales::riser_gradient`]. * `end`: the upper end of the strip below the riser.
     #[inline(always)]
-    pub(super) fn riser_gradient(&self, end: Pair, p: Vectors) -> Vectors {
+    pub(super) fn riser_gradient(&self, end: Pair<W>, p: Vectors<W>) -> Vectors<W> {
         let (_, du) = self.across_gradient(p);
         let along_u = end[1] - end[0];
         Vectors::new(-along_u * du[0], -along_u * du[1], self.simd.all(1.0))
@@ -268,6 +268,6 @@ impl<'a> Cells<'a> {
 
 /// A number between those on the two half planes.
 #[inline(always)]
-pub(super) fn at(ends: Pair, u: F64x8) -> F64x8 {
+pub(super) fn at<W: Wide>(ends: Pair<W>, u: F64x8<W>) -> F64x8<W> {
     ends[0] + u * (ends[1] - ends[0])
 }

@@ -3,97 +3,68 @@
 use super::super::crossing::LAST_STEP;
 use super::super::march::{AXIAL, Side};
 use super::cells::{Cells, Pair};
+use super::quadratic::{Quadratics, Window};
 use super::rays::UnitRays;
-use crate::math::lanes::{Avx512, F64x8, Mask, U64x8, Vectors};
+use crate::math::lanes::{F64x8, Mask, U64x8, Vectors, Wide};
 
 /// Cells in one march of eight. Longer ones are left to the march of single rays.
 const MOST_CELLS: usize = 64;
 
 /// What rays start on.
 #[derive(Clone, Copy)]
-pub(super) struct StartOn {
-    pub(super) face: Mask,
-    pub(super) lower: Mask,
-    pub(super) upper: Mask,
+pub(super) struct StartOn<W: Wide> {
+    pub(super) face: Mask<W>,
+    pub(super) lower: Mask<W>,
+    pub(super) upper: Mask<W>,
 }
 
-impl StartOn {
-    pub(super) const NOTHING: Self = Self {
-        face: Mask::NONE,
-        lower: Mask::NONE,
-        upper: Mask::NONE,
-    };
+impl<W: Wide> StartOn<W> {
+    #[inline(always)]
+    pub(super) fn nothing(simd: W) -> Self {
+        Self {
+            face: simd.none(),
+            lower: simd.none(),
+            upper: simd.none(),
+        }
+    }
 }
 
 /// What a march came to.
-pub(super) struct Marched {
-    pub(super) t: F64x8,
+pub(super) struct Marched<W: Wide> {
+    pub(super) t: F64x8<W>,
     /// In the unit-circle frame, of any length and sign.
-    pub(super) gradient: Vectors,
-    pub(super) sector: U64x8,
-    pub(super) strip: U64x8,
+    pub(super) gradient: Vectors<W>,
+    pub(super) sector: U64x8<W>,
+    pub(super) strip: U64x8<W>,
     /// Those that met a face, a riser, and of these the ones whose lower strip is the higher.
-    pub(super) face: Mask,
-    pub(super) riser: Mask,
-    pub(super) solid_below: Mask,
+    pub(super) face: Mask<W>,
+    pub(super) riser: Mask<W>,
+    pub(super) solid_below: Mask<W>,
     /// Those that came to the limit. What is in none of these is left to the march of single rays.
-    pub(super) through: Mask,
-}
-
-/// `c + 2 b t + a t^2`; see [`super::super::crossing::Quadratic`].
-struct Quadratics {
-    a: F64x8,
-    b: F64x8,
-    c: F64x8,
-}
-
-impl Quadratics {
-    #[inline(always)]
-    fn falling_root(&self, simd: Avx512) -> F64x8 {
-        let zero = simd.all(0.0);
-        let root = (self.b * self.b - self.a * self.c).max(zero).sqrt();
-        let q = root - self.b;
-        let early = (self.c / q).or(q.gt(zero), zero);
-        early.or(self.b.le(zero), -(self.b + root) / self.a)
-    }
-
-    /// Those that turn negative up to `limit`, and where.
-    #[inline(always)]
-    fn turn_negative(&self, simd: Avx512, limit: F64x8) -> (Mask, F64x8) {
-        let zero = simd.all(0.0);
-        let end = self.c + limit * (2.0 * self.b + limit * self.a);
-        let falls = end.lt(zero)
-            | (self.a.gt(zero)
-                & self.b.lt(zero)
-                & (-self.b).lt(limit * self.a)
-                & (self.b * self.b).gt(self.a * self.c));
-        let at_once = self.c.is(zero) & self.b.le(zero);
-        let root = self.falling_root(simd).max(zero).min(limit);
-        (falls, zero.or(at_once, root))
-    }
+    pub(super) through: Mask<W>,
 }
 
 /// Where each ray goes on or has stopped.
-struct State {
-    t: F64x8,
-    p: Vectors,
-    c0: F64x8,
-    r0: F64x8,
+struct State<W: Wide> {
+    t: F64x8<W>,
+    p: Vectors<W>,
+    c0: F64x8<W>,
+    r0: F64x8<W>,
 }
 
 /// Follows rays from `t` on one side of the surface up to `limit`.
 ///
 /// * `start`: the cells in which they are, and what of these they start on.
 #[inline(always)]
-pub(super) fn march(
-    simd: Avx512,
-    lanes: Mask,
-    ray: &UnitRays,
-    t: F64x8,
-    start: (Cells<'_>, StartOn),
+pub(super) fn march<W: Wide>(
+    simd: W,
+    lanes: Mask<W>,
+    ray: &UnitRays<W>,
+    t: F64x8<W>,
+    start: (Cells<'_, W>, StartOn<W>),
     side: Side,
-    limit: F64x8,
-) -> Marched {
+    limit: F64x8<W>,
+) -> Marched<W> {
     let (mut cells, mut on) = start;
     let (zero, one) = (simd.all(0.0), simd.all(1.0));
     let sign = if side == Side::Outside { 1.0 } else { -1.0 };
@@ -112,12 +83,12 @@ pub(super) fn march(
         r0: c0.sqrt().or(on.face, cells.radius(cells.across(p), p.z)),
     };
     let mut walking = lanes;
-    let mut through = Mask::NONE;
+    let mut through = simd.none();
     // Faces met within a cell; the way through it and the radius at its end.
-    let (mut crossed, mut length_of, mut r1_of) = (Mask::NONE, zero, zero);
+    let (mut crossed, mut length_of, mut r1_of) = (simd.none(), zero, zero);
     // Faces and risers met on the boundary of two cells.
-    let (mut stepped, mut riser, mut riser_up) = (Mask::NONE, Mask::NONE, Mask::NONE);
-    let (mut riser_end, mut riser_strip): (Pair, U64x8) = ([zero; 2], cells.strip);
+    let (mut stepped, mut riser, mut riser_up) = (simd.none(), simd.none(), simd.none());
+    let (mut riser_end, mut riser_strip): (Pair<W>, U64x8<W>) = ([zero; 2], cells.strip);
     for _ in 0..MOST_CELLS {
         let State { t, p, c0, r0 } = at;
         let z = p.z - cells.shift;
@@ -131,7 +102,7 @@ pub(super) fn march(
         let rate = -turn_sign * (cos * ray.by.y - sin * ray.by.x);
         let mut sideways = rate.gt(zero) & way.lt(rate * rest);
         let mut length = (way.max(zero) / rate).or(sideways, rest);
-        let (mut up, mut down) = (Mask::NONE, Mask::NONE);
+        let (mut up, mut down) = (simd.none(), simd.none());
         // Out of the strip?
         let z1 = z + length * ray.by.z;
         let low = cells.begin[0].max(cells.begin[1]);
@@ -251,27 +222,35 @@ pub(super) fn march(
 /// How far rays stay between the ends of their strips, up to `length`, and which leave upward and downward.
 /// See `Window::ends`.
 #[inline(always)]
-fn ends(
-    simd: Avx512,
-    cells: &Cells<'_>,
-    ray: &UnitRays,
-    p: Vectors,
-    z: F64x8,
-    on: StartOn,
-    length: F64x8,
-) -> (F64x8, Mask, Mask) {
+fn ends<W: Wide>(
+    simd: W,
+    cells: &Cells<'_, W>,
+    ray: &UnitRays<W>,
+    p: Vectors<W>,
+    z: F64x8<W>,
+    on: StartOn<W>,
+    length: F64x8<W>,
+) -> (F64x8<W>, Mask<W>, Mask<W>) {
     let zero = simd.all(0.0);
     let (a, b) = (cells.distance(0, p.x, p.y), -cells.distance(1, p.x, p.y));
     let (da, db) = (
         cells.distance(0, ray.by.x, ray.by.y),
         -cells.distance(1, ray.by.x, ray.by.y),
     );
-    let window = (a, b, da, db, z, ray.by.z);
-    let mut above = below(window, cells.end);
+    let dz = ray.by.z;
+    let window = Window {
+        a,
+        b,
+        da,
+        db,
+        z,
+        dz,
+    };
+    let mut above = window.below(cells.end);
     above.c = zero.or(on.upper, above.c.max(zero));
     let (up, way) = above.turn_negative(simd, length);
     let length = way.or(up, length);
-    let under = below(window, cells.begin);
+    let under = window.below(cells.begin);
     let under = Quadratics {
         a: -under.a,
         b: -under.b,
@@ -281,32 +260,17 @@ fn ends(
     (way.or(down, length), up & !down, down)
 }
 
-/// `(a + b) (end(u) - z)`: positive below the end. See `Window::below`.
-#[inline(always)]
-fn below(
-    (a, b, da, db, z, dz): (F64x8, F64x8, F64x8, F64x8, F64x8, F64x8),
-    end: Pair,
-) -> Quadratics {
-    let (w, dw) = (a + b, da + db);
-    let (e0, e1) = (end[0] - z, end[1] - z);
-    Quadratics {
-        a: -dz * dw,
-        b: 0.5 * (e0 * db + e1 * da - dz * w),
-        c: e0 * b + e1 * a,
-    }
-}
-
 /// f with E replaced by its chord. See `Crossing::chord`.
 #[inline(always)]
-fn chord(
+fn chord<W: Wide>(
     sign: f64,
-    ray: &UnitRays,
-    p: Vectors,
-    length: F64x8,
-    r0: F64x8,
-    r1: F64x8,
-    c: F64x8,
-) -> Quadratics {
+    ray: &UnitRays<W>,
+    p: Vectors<W>,
+    length: F64x8<W>,
+    r0: F64x8<W>,
+    r1: F64x8<W>,
+    c: F64x8<W>,
+) -> Quadratics<W> {
     let rise = r1 - r0;
     let c1 = p.x * ray.by.x + p.y * ray.by.y;
     Quadratics {
@@ -319,16 +283,16 @@ fn chord(
 /// Ways to the first crossing, and for which they are sure. See `Crossing::first`.
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "what a crossing is of")]
-fn first(
-    simd: Avx512,
-    lanes: Mask,
+fn first<W: Wide>(
+    simd: W,
+    lanes: Mask<W>,
     sign: f64,
-    ray: &UnitRays,
-    cells: &Cells<'_>,
-    at: &State,
-    length: F64x8,
-    chord: &Quadratics,
-) -> (F64x8, Mask) {
+    ray: &UnitRays<W>,
+    cells: &Cells<'_, W>,
+    at: &State<W>,
+    length: F64x8<W>,
+    chord: &Quadratics<W>,
+) -> (F64x8<W>, Mask<W>) {
     let (zero, one) = (simd.all(0.0), simd.all(1.0));
     let none = length.le(zero);
     let on_face = zero.or(
@@ -358,7 +322,7 @@ fn first(
     let (b, a) = (p.x * ray.by.x + p.y * ray.by.y, ray.a);
 
     let (mut t, mut last) = (x * length, 0.5 * length);
-    let (mut searching, mut found) = (lanes & !none, Mask::NONE);
+    let (mut searching, mut found) = (lanes & !none, simd.none());
     for _ in 0..4 {
         let w = w0 + t * w1;
         let (s, ds) = (s0 + t * (s1 + t * s2), s1 + 2.0 * t * s2);

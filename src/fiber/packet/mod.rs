@@ -4,18 +4,20 @@
 mod cells;
 mod march;
 mod pigment;
+mod quadratic;
 mod rays;
 mod state;
 
 pub(super) use cells::Shell;
 
+use super::cells::Sixteens;
 use super::cortex::Pigment;
 use super::march::Side;
 use super::scales::Scales;
 use super::section::Section;
 use super::surface::Surface;
 use super::{Element, Fiber, HitState, Region};
-use crate::math::lanes::{Avx512, F64x8, Mask, U64x8, Vectors};
+use crate::math::lanes::{F64x8, Mask, U64x8, Vectors, Wide};
 use cells::{Cells, at};
 use glam::DVec3;
 use march::{Marched, StartOn, march};
@@ -24,41 +26,41 @@ use state::{FACE, RISER, RISER_OF_LOWER};
 
 /// Eight rays and what each starts on, as of [`HitState::bits`].
 #[derive(Clone, Copy)]
-pub(crate) struct Rays {
-    pub(crate) lanes: Mask,
-    pub(crate) origin: Vectors,
-    pub(crate) dir: Vectors,
-    pub(crate) from: U64x8,
+pub(crate) struct Rays<W: Wide> {
+    pub(crate) lanes: Mask<W>,
+    pub(crate) origin: Vectors<W>,
+    pub(crate) dir: Vectors<W>,
+    pub(crate) from: U64x8<W>,
 }
 
 /// What eight rays came to. Those in neither mask are left to [`Fiber::next_hit`].
-pub(crate) struct Hits {
+pub(crate) struct Hits<W: Wide> {
     /// Those that met the outer surface.
-    pub(crate) met: Mask,
+    pub(crate) met: Mask<W>,
     /// Those that meet none of it where it was looked for.
-    pub(crate) through: Mask,
-    pub(crate) riser: Mask,
-    pub(crate) t: F64x8,
+    pub(crate) through: Mask<W>,
+    pub(crate) riser: Mask<W>,
+    pub(crate) t: F64x8<W>,
     /// Unit normals, against the rays.
-    pub(crate) normal: Vectors,
+    pub(crate) normal: Vectors<W>,
     /// States to go on from.
-    pub(crate) state: U64x8,
+    pub(crate) state: U64x8<W>,
 }
 
 /// Where rays in the cortex are on the circle within all scales and on the one around all.
-struct Within {
-    from: F64x8,
-    to: F64x8,
+struct Within<W: Wide> {
+    from: F64x8<W>,
+    to: F64x8<W>,
     /// Those that are within all scales now or later.
-    inner: Mask,
+    inner: Mask<W>,
     /// The way to the circle around all.
-    leave: F64x8,
+    leave: F64x8<W>,
 }
 
 /// The outer surface of a fiber, for rays eight at a time.
 #[derive(Clone, Copy)]
-pub(crate) struct PacketShell<'a> {
-    simd: Avx512,
+pub(crate) struct PacketShell<'a, W> {
+    simd: W,
     section: &'a Section,
     scales: &'a Scales,
     pigment: &'a Pigment,
@@ -66,10 +68,10 @@ pub(crate) struct PacketShell<'a> {
     pieces: bool,
 }
 
-impl<'a> PacketShell<'a> {
+impl<'a, W: Wide> PacketShell<'a, W> {
     /// Rays from far away: where they enter the fiber, or that they miss it.
     #[inline(always)]
-    pub(crate) fn arrive(&self, rays: &Rays) -> Hits {
+    pub(crate) fn arrive(&self, rays: &Rays<W>) -> Hits<W> {
         let (simd, scales) = (self.simd, self.scales);
         let zero = simd.all(0.0);
         // Far origins cost digits: start beside the axis, on the way in.
@@ -93,7 +95,11 @@ impl<'a> PacketShell<'a> {
 
     /// Where rays outside may meet the shell: from, to, those that do, and those that surely do not.
     #[inline(always)]
-    fn outside(&self, lanes: Mask, unit: &UnitRays) -> (F64x8, F64x8, Mask, Mask) {
+    fn outside(
+        &self,
+        lanes: Mask<W>,
+        unit: &UnitRays<W>,
+    ) -> (F64x8<W>, F64x8<W>, Mask<W>, Mask<W>) {
         let (simd, scales) = (self.simd, self.scales);
         let zero = simd.all(0.0);
         let sure = lanes & !unit.axial(simd);
@@ -109,11 +115,17 @@ impl<'a> PacketShell<'a> {
     ///
     /// * `gradient`: in the unit-circle frame.
     #[inline(always)]
-    pub(crate) fn void_hits(&self, rays: &Rays, t: F64x8, gradient: Vectors, state: U64x8) -> Hits {
+    pub(crate) fn void_hits(
+        &self,
+        rays: &Rays<W>,
+        t: F64x8<W>,
+        gradient: Vectors<W>,
+        state: U64x8<W>,
+    ) -> Hits<W> {
         Hits {
             met: rays.lanes,
-            through: Mask::NONE,
-            riser: Mask::NONE,
+            through: self.simd.none(),
+            riser: self.simd.none(),
             t,
             normal: self.normal_against(gradient, rays.dir),
             state,
@@ -122,9 +134,14 @@ impl<'a> PacketShell<'a> {
 
     /// Pigment along rays in the cortex, and the lanes in which it is known. See [`Fiber::pigment_um`].
     #[inline(always)]
-    pub(crate) fn pigment_um(&self, rays: &Rays, lanes: Mask, t: F64x8) -> (F64x8, Mask) {
+    pub(crate) fn pigment_um(
+        &self,
+        rays: &Rays<W>,
+        lanes: Mask<W>,
+        t: F64x8<W>,
+    ) -> (F64x8<W>, Mask<W>) {
         if self.pieces {
-            return (t, Mask::NONE);
+            return (t, self.simd.none());
         }
         let unit = UnitRays::new(self.section, rays.origin, rays.dir);
         self.pigment.along_rays(self.simd, lanes, &unit, t)
@@ -132,7 +149,7 @@ impl<'a> PacketShell<'a> {
 
     /// Rays outside that start on the surface: what they meet of it, or that they leave it.
     #[inline(always)]
-    pub(crate) fn enter(&self, rays: &Rays) -> Hits {
+    pub(crate) fn enter(&self, rays: &Rays<W>) -> Hits<W> {
         let unit = UnitRays::new(self.section, rays.origin, rays.dir);
         let (t0, limit, lanes, gone) = self.outside(rays.lanes, &unit);
         let start = self.start(&unit, t0, rays.from, Side::Outside);
@@ -145,7 +162,7 @@ impl<'a> PacketShell<'a> {
     /// Rays in the cortex that start on the surface: what they meet of it before they are within all
     /// scales.
     #[inline(always)]
-    pub(crate) fn inward(&self, rays: &Rays) -> Hits {
+    pub(crate) fn inward(&self, rays: &Rays<W>) -> Hits<W> {
         let (simd, scales) = (self.simd, self.scales);
         let zero = simd.all(0.0);
         let unit = UnitRays::new(self.section, rays.origin, rays.dir);
@@ -164,7 +181,7 @@ impl<'a> PacketShell<'a> {
 
     /// Rays in the cortex that meet nothing within all scales: where they meet the surface.
     #[inline(always)]
-    pub(crate) fn outward(&self, rays: &Rays) -> Hits {
+    pub(crate) fn outward(&self, rays: &Rays<W>) -> Hits<W> {
         let simd = self.simd;
         let unit = UnitRays::new(self.section, rays.origin, rays.dir);
         let Within {
@@ -175,13 +192,13 @@ impl<'a> PacketShell<'a> {
         let limit = leave.max(to);
         let marched = march(simd, lanes, &unit, to, start, Side::Inside, limit);
         let mut hits = self.hits(rays, marched);
-        hits.through = Mask::NONE;
+        hits.through = self.simd.none();
         hits
     }
 
     /// Where rays in the cortex are within all scales, and where they leave the shell.
     #[inline(always)]
-    fn within(&self, unit: &UnitRays) -> Within {
+    fn within(&self, unit: &UnitRays<W>) -> Within<W> {
         let (simd, scales) = (self.simd, self.scales);
         let zero = simd.all(0.0);
         let (from, to, within) = unit.inside_circle(simd, scales.rho_min);
@@ -196,15 +213,26 @@ impl<'a> PacketShell<'a> {
 
     /// The cells that rays come to from elsewhere at `t`. Lanes that are not asked for look at a place that exists.
     #[inline(always)]
-    fn locate(&self, unit: &UnitRays, lanes: Mask, t: F64x8) -> (F64x8, (Cells<'a>, StartOn)) {
+    fn locate(
+        &self,
+        unit: &UnitRays<W>,
+        lanes: Mask<W>,
+        t: F64x8<W>,
+    ) -> (F64x8<W>, (Cells<'a, W>, StartOn<W>)) {
         let t = t.or(lanes, self.simd.all(0.0));
         let cells = Cells::locate(self.simd, self.scales, unit.at(t));
-        (t, (cells, StartOn::NOTHING))
+        (t, (cells, StartOn::nothing(self.simd)))
     }
 
     /// The cells in which rays start, and what of these the start lies on. See `Scales::start`.
     #[inline(always)]
-    fn start(&self, unit: &UnitRays, t: F64x8, from: U64x8, side: Side) -> (Cells<'a>, StartOn) {
+    fn start(
+        &self,
+        unit: &UnitRays<W>,
+        t: F64x8<W>,
+        from: U64x8<W>,
+        side: Side,
+    ) -> (Cells<'a, W>, StartOn<W>) {
         let (simd, scales) = (self.simd, self.scales);
         let low = simd.all_bits(0xffff);
         let kind = from.right::<32>();
@@ -231,7 +259,7 @@ impl<'a> PacketShell<'a> {
 
     /// See [`Section::normal_against`].
     #[inline(always)]
-    fn normal_against(&self, gradient: Vectors, dir: Vectors) -> Vectors {
+    fn normal_against(&self, gradient: Vectors<W>, dir: Vectors<W>) -> Vectors<W> {
         let [ia, ib] = self.section.inverse;
         let n = Vectors::new(gradient.x * ia, gradient.y * ib, gradient.z);
         let n = n.normalized();
@@ -240,7 +268,7 @@ impl<'a> PacketShell<'a> {
     }
 
     #[inline(always)]
-    fn hits(&self, rays: &Rays, marched: Marched) -> Hits {
+    fn hits(&self, rays: &Rays<W>, marched: Marched<W>) -> Hits<W> {
         let simd = self.simd;
         let Marched {
             t,
@@ -269,7 +297,7 @@ impl<'a> PacketShell<'a> {
 
 impl Fiber {
     /// Its outer surface for rays eight at a time, where [`Fiber::has_packets`].
-    pub(crate) fn packet_shell(&self, simd: Avx512) -> Option<PacketShell<'_>> {
+    pub(crate) fn packet_shell<W: Wide>(&self, simd: W) -> Option<PacketShell<'_, W>> {
         match &self.surface {
             Surface::Scales(scales) if self.has_packets() => Some(PacketShell {
                 simd,
@@ -290,13 +318,13 @@ impl Fiber {
     /// The next wall of a void along a ray in one (`inside`) or in the cortex, there only if nothing of the outer surface
     /// comes before: the way, the gradient in the unit-circle frame and the state to go on from.
     #[inline(always)]
-    pub(crate) fn next_void(
+    pub(crate) fn next_void<W: Wide>(
         &self,
         origin: DVec3,
         dir: DVec3,
         from: HitState,
         inside: bool,
-        simd: Avx512,
+        simd: W,
     ) -> Option<(f64, DVec3, HitState)> {
         let rays = super::medulla::Rays {
             origin,
@@ -309,7 +337,7 @@ impl Fiber {
         };
         let (t, index) = if inside {
             match self.medulla.cells() {
-                Some(cells) => cells.leave_by(simd, origin, dir, from)?,
+                Some(cells) => cells.leave_by(Sixteens(simd), origin, dir, from)?,
                 None => self.medulla.leave_void(&rays, from)?,
             }
         } else {
@@ -321,7 +349,7 @@ impl Fiber {
                 }
             };
             match self.medulla.cells() {
-                Some(cells) => cells.enter_by(simd, (origin, dir), t0, t1, from)?,
+                Some(cells) => cells.enter_by(Sixteens(simd), (origin, dir), t0, t1, from)?,
                 None => self.medulla.enter_void(&rays, t0, t1, from)?,
             }
         };

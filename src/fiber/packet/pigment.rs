@@ -2,20 +2,20 @@
 
 use super::super::cortex::{Lean, Pigment};
 use super::rays::UnitRays;
-use crate::math::lanes::{Avx512, F64x8, Mask};
+use crate::math::lanes::{F64x8, Mask, Wide};
 
 impl Pigment {
     /// [`Pigment::along`] without pieces, and the lanes in which it is known.
     #[inline(always)]
-    pub(super) fn along_rays(
+    pub(super) fn along_rays<W: Wide>(
         &self,
-        simd: Avx512,
-        lanes: Mask,
-        ray: &UnitRays,
-        t: F64x8,
-    ) -> (F64x8, Mask) {
+        simd: W,
+        lanes: Mask<W>,
+        ray: &UnitRays<W>,
+        t: F64x8<W>,
+    ) -> (F64x8<W>, Mask<W>) {
         if self.is_streaked() {
-            return (t, Mask::NONE);
+            return (t, simd.none());
         }
         let zero = simd.all(0.0);
         let (mut from, mut to) = (zero, zero);
@@ -30,7 +30,7 @@ impl Pigment {
         let inside = (to - from).max(zero);
         let core = self.walls * inside;
         let Some(lean) = &self.lean else {
-            return (t - inside + core, Mask::ALL);
+            return (t - inside + core, simd.every());
         };
         let apart = inside.gt(zero);
         let first = lean.integral_along(simd, lanes, ray, zero, from.or(apart, t));
@@ -46,14 +46,14 @@ impl Pigment {
 impl Lean {
     /// [`Lean::integral`], 0 where `t1` is not after `t0`; not for rays along the axis.
     #[inline(always)]
-    fn integral_along(
+    fn integral_along<W: Wide>(
         &self,
-        simd: Avx512,
-        lanes: Mask,
-        ray: &UnitRays,
-        t0: F64x8,
-        t1: F64x8,
-    ) -> F64x8 {
+        simd: W,
+        lanes: Mask<W>,
+        ray: &UnitRays<W>,
+        t0: F64x8<W>,
+        t1: F64x8<W>,
+    ) -> F64x8<W> {
         let zero = simd.all(0.0);
         let (a, b, near) = ray.inside_circle(simd, self.rim);
         let some = t0.lt(t1) & near;

@@ -1,22 +1,25 @@
-//! Eight numbers in one register of AVX-512, each rounded as a plain number would be: the same
+//! Eight numbers side by side in AVX-512 or AVX2, each rounded as a plain number would be: the same
 //! formula gives the same bits eight at a time and one at a time.
 //!
-//! All `unsafe` of the flight of photons is here. What makes it sound: an [`Avx512`] exists only where the processor was
-//! asked, and the first [`F64x8`] or [`U64x8`] of any calculation is made by one.
+//! What is written with them is written once, for any [`Wide`]. All `unsafe` of the flight of photons is in the two
+//! instruction sets, here.
 
-#![allow(
-    unsafe_code,
-    reason = "measured several times faster; the processor was asked"
-)]
-
+mod avx2;
+mod avx512;
+mod fours;
 mod single;
+#[cfg(test)]
+mod tests;
 mod vectors;
 mod whole;
+mod wide;
 
+pub(crate) use avx2::Avx2;
+pub(crate) use avx512::Avx512;
 pub(crate) use single::{F32x16, Singles};
 pub(crate) use vectors::Vectors;
+pub(crate) use wide::Wide;
 
-use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 /// How many lanes there are.
@@ -27,285 +30,130 @@ pub(crate) const LANES: usize = 8;
 #[repr(C, align(64))]
 pub(crate) struct Row(pub(crate) [f64; LANES]);
 
-/// Proof that the processor has AVX-512.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Avx512(());
-
 /// Eight numbers.
 #[derive(Clone, Copy)]
-pub(crate) struct F64x8(__m512d);
+pub(crate) struct F64x8<W: Wide>(W, W::Reals);
 
 /// Eight whole numbers.
 #[derive(Clone, Copy)]
-pub(crate) struct U64x8(__m512i);
+pub(crate) struct U64x8<W: Wide>(W, W::Wholes);
 
-/// Some of eight lanes, the first in the lowest bit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Mask(pub(crate) u8);
+/// Some of eight lanes.
+#[derive(Clone, Copy)]
+pub(crate) struct Mask<W: Wide>(W, W::Mask);
 
-impl Avx512 {
-    /// Asks the processor.
-    pub(crate) fn detect() -> Option<Self> {
-        let has = is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512vl")
-            && is_x86_feature_detected!("bmi1")
-            && is_x86_feature_detected!("bmi2")
-            && is_x86_feature_detected!("lzcnt")
-            && is_x86_feature_detected!("popcnt");
-        has.then_some(Self(()))
-    }
-
-    /// Runs a calculation in which the compiler may use AVX-512. What is to profit must be inlined.
-    #[inline(always)]
-    pub(crate) fn run<R>(self, f: impl FnOnce() -> R) -> R {
-        #[target_feature(enable = "avx512f,avx512dq,avx512vl,bmi1,bmi2,lzcnt,popcnt")]
-        fn run<R>(f: impl FnOnce() -> R) -> R {
-            f()
-        }
-        // SAFETY: the processor has what the function enables.
-        unsafe { run(f) }
-    }
-
-    /// The same number in all lanes.
-    #[inline(always)]
-    pub(crate) fn all(self, x: f64) -> F64x8 {
-        // SAFETY: the processor has AVX-512.
-        F64x8(unsafe { _mm512_set1_pd(x) })
-    }
-
-    /// Different numbers.
-    #[inline(always)]
-    pub(crate) fn load(self, row: &Row) -> F64x8 {
-        // SAFETY: the processor has AVX-512; a row is 64 bytes at an address divisible by 64.
-        F64x8(unsafe { _mm512_load_pd(row.0.as_ptr()) })
-    }
-
-    /// The same whole number in all lanes.
-    #[inline(always)]
-    pub(crate) fn all_bits(self, x: u64) -> U64x8 {
-        // SAFETY: the processor has AVX-512.
-        U64x8(unsafe { _mm512_set1_epi64(x as i64) })
-    }
-
-    /// Entries of a table.
-    ///
-    /// # Panics
-    /// If one is not in it.
-    #[inline(always)]
-    pub(crate) fn gather(self, table: &[f64], index: U64x8) -> F64x8 {
-        assert!(index.lt(self.all_bits(table.len() as u64)) == Mask::ALL);
-        // SAFETY: the processor has AVX-512, and all indices are below the table's length.
-        F64x8(unsafe { _mm512_i64gather_pd::<8>(index.0, table.as_ptr()) })
-    }
-
-    /// Row `k` of the result holds number `k` of each of these: one row a lane.
-    #[inline(always)]
-    pub(crate) fn columns(self, rows: [&Row; LANES]) -> [F64x8; LANES] {
-        let [a, b, c, d, e, f, g, h] = rows;
-        transposed([
-            self.load(a),
-            self.load(b),
-            self.load(c),
-            self.load(d),
-            self.load(e),
-            self.load(f),
-            self.load(g),
-            self.load(h),
-        ])
-    }
-}
-
-/// Lane `i` of result `k` is lane `k` of `rows[i]`.
-#[inline(always)]
-pub(crate) fn transposed(rows: [F64x8; LANES]) -> [F64x8; LANES] {
-    let r: [__m512d; LANES] = [
-        rows[0].0, rows[1].0, rows[2].0, rows[3].0, rows[4].0, rows[5].0, rows[6].0, rows[7].0,
-    ];
-    // SAFETY: the processor has AVX-512, since there are F64x8.
-    unsafe {
-        // Pairs of rows, then of pairs, then of fours.
-        let (p0, p1) = (
-            _mm512_unpacklo_pd(r[0], r[1]),
-            _mm512_unpackhi_pd(r[0], r[1]),
-        );
-        let (p2, p3) = (
-            _mm512_unpacklo_pd(r[2], r[3]),
-            _mm512_unpackhi_pd(r[2], r[3]),
-        );
-        let (p4, p5) = (
-            _mm512_unpacklo_pd(r[4], r[5]),
-            _mm512_unpackhi_pd(r[4], r[5]),
-        );
-        let (p6, p7) = (
-            _mm512_unpacklo_pd(r[6], r[7]),
-            _mm512_unpackhi_pd(r[6], r[7]),
-        );
-        let ((a04, a26), (a15, a37)) = (parted(p0, p2), parted(p1, p3));
-        let ((b04, b26), (b15, b37)) = (parted(p4, p6), parted(p5, p7));
-        let ((c0, c4), (c1, c5)) = (parted(a04, b04), parted(a15, b15));
-        let ((c2, c6), (c3, c7)) = (parted(a26, b26), parted(a37, b37));
-        [
-            F64x8(c0),
-            F64x8(c1),
-            F64x8(c2),
-            F64x8(c3),
-            F64x8(c4),
-            F64x8(c5),
-            F64x8(c6),
-            F64x8(c7),
-        ]
-    }
-}
-
-/// The even pairs of both, and the odd ones.
-///
-/// # Safety
-/// The processor must have AVX-512.
-#[inline(always)]
-unsafe fn parted(a: __m512d, b: __m512d) -> (__m512d, __m512d) {
-    // SAFETY: as the caller says.
-    unsafe {
-        (
-            _mm512_shuffle_f64x2::<0b10_00_10_00>(a, b),
-            _mm512_shuffle_f64x2::<0b11_01_11_01>(a, b),
-        )
-    }
-}
-
-impl F64x8 {
+impl<W: Wide> F64x8<W> {
     /// All lanes in memory.
     #[inline(always)]
     pub(crate) fn row(self) -> Row {
-        let mut row = Row::default();
-        // SAFETY: the processor has AVX-512; a row is 64 bytes at an address divisible by 64.
-        unsafe { _mm512_store_pd(row.0.as_mut_ptr(), self.0) };
-        row
+        self.0.write(self.1)
     }
 
     #[inline(always)]
     pub(crate) fn sqrt(self) -> Self {
-        // SAFETY: the processor has AVX-512, since there is an F64x8.
-        Self(unsafe { _mm512_sqrt_pd(self.0) })
+        Self(self.0, self.0.sqrt(self.1))
     }
 
     /// The smaller one, `other` where the two cannot be compared.
     #[inline(always)]
     pub(crate) fn min(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_min_pd(self.0, other.0) })
+        Self(self.0, self.0.min(self.1, other.1))
     }
 
     /// The larger one, `other` where the two cannot be compared.
     #[inline(always)]
     pub(crate) fn max(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_max_pd(self.0, other.0) })
+        Self(self.0, self.0.max(self.1, other.1))
     }
 
     #[inline(always)]
     pub(crate) fn abs(self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_abs_pd(self.0) })
+        Self(self.0, self.0.abs(self.1))
     }
 
     /// With the sign of another number.
     #[inline(always)]
     pub(crate) fn with_sign_of(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe {
-            let sign = _mm512_set1_pd(-0.0);
-            _mm512_or_pd(_mm512_andnot_pd(sign, self.0), _mm512_and_pd(sign, other.0))
-        })
+        Self(self.0, self.0.with_sign_of(self.1, other.1))
     }
 
     /// The whole number below.
     #[inline(always)]
     pub(crate) fn floor(self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_roundscale_pd::<0x01>(self.0) })
+        Self(self.0, self.0.floor(self.1))
     }
 
-    /// The whole part, of numbers that are not negative and below 2^63.
+    /// The whole part, of numbers that are not negative and below 2^31; 2^31 or more of all that are -1 or less, larger
+    /// or undefined.
     #[inline(always)]
-    pub(crate) fn whole(self) -> U64x8 {
-        // SAFETY: as above.
-        U64x8(unsafe { _mm512_cvttpd_epi64(self.0) })
-    }
-
-    #[inline(always)]
-    pub(crate) fn bits(self) -> U64x8 {
-        // SAFETY: as above.
-        U64x8(unsafe { _mm512_castpd_si512(self.0) })
+    pub(crate) fn whole(self) -> U64x8<W> {
+        U64x8(self.0, self.0.whole(self.1))
     }
 
     #[inline(always)]
-    pub(crate) fn lt(self, other: Self) -> Mask {
-        // SAFETY: as above.
-        Mask(unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0) })
+    pub(crate) fn bits(self) -> U64x8<W> {
+        U64x8(self.0, self.0.bits_of(self.1))
     }
 
     #[inline(always)]
-    pub(crate) fn le(self, other: Self) -> Mask {
-        // SAFETY: as above.
-        Mask(unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, other.0) })
+    pub(crate) fn lt(self, other: Self) -> Mask<W> {
+        Mask(self.0, self.0.less(self.1, other.1))
     }
 
     #[inline(always)]
-    pub(crate) fn gt(self, other: Self) -> Mask {
+    pub(crate) fn le(self, other: Self) -> Mask<W> {
+        Mask(self.0, self.0.at_most(self.1, other.1))
+    }
+
+    #[inline(always)]
+    pub(crate) fn gt(self, other: Self) -> Mask<W> {
         other.lt(self)
     }
 
     #[inline(always)]
-    pub(crate) fn ge(self, other: Self) -> Mask {
+    pub(crate) fn ge(self, other: Self) -> Mask<W> {
         other.le(self)
     }
 
     #[inline(always)]
-    pub(crate) fn is(self, other: Self) -> Mask {
-        // SAFETY: as above.
-        Mask(unsafe { _mm512_cmp_pd_mask::<_CMP_EQ_OQ>(self.0, other.0) })
+    pub(crate) fn is(self, other: Self) -> Mask<W> {
+        Mask(self.0, self.0.equal(self.1, other.1))
     }
 
     /// This in the lanes of a mask, `other` in the rest.
     #[inline(always)]
-    pub(crate) fn or(self, mask: Mask, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_mask_blend_pd(mask.0, other.0, self.0) })
+    pub(crate) fn or(self, mask: Mask<W>, other: Self) -> Self {
+        Self(self.0, self.0.choose(mask.1, self.1, other.1))
     }
 
     /// The lanes of eight entries: lane `i` is entry `index[i]` modulo 8 of this.
     #[inline(always)]
-    pub(crate) fn pick(self, index: U64x8) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_permutexvar_pd(index.0, self.0) })
+    pub(crate) fn pick(self, index: U64x8<W>) -> Self {
+        Self(self.0, self.0.pick(self.1, index.1))
     }
 }
 
-impl Mask {
-    pub(crate) const NONE: Self = Self(0);
-    pub(crate) const ALL: Self = Self(0xff);
-
-    /// The first `count` lanes, up to 8.
-    #[inline(always)]
-    pub(crate) fn first(count: usize) -> Self {
-        Self(((1u32 << count) - 1) as u8)
-    }
-
+impl<W: Wide> Mask<W> {
     #[inline(always)]
     pub(crate) fn any(self) -> bool {
-        self.0 != 0
+        self.0.any(self.1)
+    }
+
+    /// One bit a lane, that of the first is the lowest.
+    #[inline(always)]
+    pub(crate) fn bits(self) -> u8 {
+        self.0.bits_of_mask(self.1)
     }
 
     #[inline(always)]
     pub(crate) fn has(self, lane: usize) -> bool {
-        self.0 >> lane & 1 != 0
+        self.bits() >> lane & 1 != 0
     }
 
     /// The numbers of the lanes.
     #[inline(always)]
     pub(crate) fn lanes(self) -> impl Iterator<Item = usize> {
-        let mut rest = self.0;
+        let mut rest = self.bits();
         std::iter::from_fn(move || {
             let lane = rest.trailing_zeros() as usize;
             rest &= rest.wrapping_sub(1);
@@ -315,78 +163,74 @@ impl Mask {
 }
 
 macro_rules! operator {
-    ($trait:ident, $name:ident, $intrinsic:ident) => {
-        impl $trait for F64x8 {
+    ($trait:ident, $name:ident) => {
+        impl<W: Wide> $trait for F64x8<W> {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
-                // SAFETY: the processor has AVX-512, since there are F64x8.
-                Self(unsafe { $intrinsic(self.0, other.0) })
+                Self(self.0, self.0.$name(self.1, other.1))
             }
         }
 
-        impl $trait<f64> for F64x8 {
+        impl<W: Wide> $trait<f64> for F64x8<W> {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: f64) -> Self {
-                // SAFETY: the processor has AVX-512, since there is an F64x8.
-                Self(unsafe { $intrinsic(self.0, _mm512_set1_pd(other)) })
+                self.$name(self.0.all(other))
             }
         }
 
-        impl $trait<F64x8> for f64 {
-            type Output = F64x8;
+        impl<W: Wide> $trait<F64x8<W>> for f64 {
+            type Output = F64x8<W>;
             #[inline(always)]
-            fn $name(self, other: F64x8) -> F64x8 {
-                // SAFETY: the processor has AVX-512, since there is an F64x8.
-                F64x8(unsafe { $intrinsic(_mm512_set1_pd(self), other.0) })
+            fn $name(self, other: F64x8<W>) -> F64x8<W> {
+                other.0.all(self).$name(other)
             }
         }
     };
 }
 
-operator!(Add, add, _mm512_add_pd);
-operator!(Sub, sub, _mm512_sub_pd);
-operator!(Mul, mul, _mm512_mul_pd);
-operator!(Div, div, _mm512_div_pd);
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
+operator!(Div, div);
 
-impl Neg for F64x8 {
+impl<W: Wide> Neg for F64x8<W> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        // SAFETY: the processor has AVX-512, since there is an F64x8.
-        Self(unsafe { _mm512_xor_pd(self.0, _mm512_set1_pd(-0.0)) })
+        Self(self.0, self.0.neg(self.1))
     }
 }
 
-impl BitAnd for Mask {
+impl<W: Wide> BitAnd for Mask<W> {
     type Output = Self;
     #[inline(always)]
     fn bitand(self, other: Self) -> Self {
-        Self(self.0 & other.0)
+        Self(self.0, self.0.both(self.1, other.1))
     }
 }
 
-impl BitOr for Mask {
+impl<W: Wide> BitOr for Mask<W> {
     type Output = Self;
     #[inline(always)]
     fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0)
+        Self(self.0, self.0.either(self.1, other.1))
     }
 }
 
-impl BitXor for Mask {
+impl<W: Wide> BitXor for Mask<W> {
     type Output = Self;
     #[inline(always)]
     fn bitxor(self, other: Self) -> Self {
-        Self(self.0 ^ other.0)
+        Self(self.0, self.0.one_of(self.1, other.1))
     }
 }
 
-impl Not for Mask {
+impl<W: Wide> Not for Mask<W> {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        Self(!self.0)
+        Self(self.0, self.0.others(self.1))
     }
 }

@@ -1,7 +1,6 @@
-//! Sixteen numbers of single precision in one register.
+//! Sixteen numbers of single precision.
 
-use super::Avx512;
-use std::arch::x86_64::*;
+use super::Wide;
 use std::ops::{Add, Div, Mul, Sub};
 
 /// Sixteen numbers of single precision in memory: a line of the cache.
@@ -11,65 +10,36 @@ pub(crate) struct Singles(pub(crate) [f32; 16]);
 
 /// Sixteen numbers of single precision.
 #[derive(Clone, Copy)]
-pub(crate) struct F32x16(__m512);
+pub(crate) struct F32x16<W: Wide>(pub(super) W, pub(super) W::Shorts);
 
-impl Avx512 {
-    /// The same number in all lanes.
+impl<W: Wide> F32x16<W> {
+    /// This where `low` is less than `high`, `other` in the rest.
     #[inline(always)]
-    pub(crate) fn all_single(self, x: f32) -> F32x16 {
-        // SAFETY: the processor has AVX-512.
-        F32x16(unsafe { _mm512_set1_ps(x) })
-    }
-
-    /// Different numbers.
-    #[inline(always)]
-    pub(crate) fn load_singles(self, row: &Singles) -> F32x16 {
-        // SAFETY: the processor has AVX-512; a row is 64 bytes at an address divisible by 64.
-        F32x16(unsafe { _mm512_load_ps(row.0.as_ptr()) })
-    }
-}
-
-impl F32x16 {
-    /// The lanes in which it is less, one bit each.
-    #[inline(always)]
-    pub(crate) fn lt(self, other: Self) -> u16 {
-        // SAFETY: the processor has AVX-512, since there is an F32x16.
-        unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) }
-    }
-
-    /// This in the lanes of a mask, `other` in the rest.
-    #[inline(always)]
-    pub(crate) fn or(self, mask: u16, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { _mm512_mask_blend_ps(mask, other.0, self.0) })
+    pub(crate) fn where_less(self, low: Self, high: Self, other: Self) -> Self {
+        let pair = [low.1, high.1];
+        Self(self.0, self.0.choose_less(pair, self.1, other.1))
     }
 
     /// The least of all, and the first lane that has it. None of them may be undefined.
     #[inline(always)]
     pub(crate) fn least(self) -> (f32, usize) {
-        // SAFETY: as above.
-        unsafe {
-            let least = _mm512_reduce_min_ps(self.0);
-            let there = _mm512_cmp_ps_mask::<_CMP_EQ_OQ>(self.0, _mm512_set1_ps(least));
-            (least, there.trailing_zeros() as usize & 15)
-        }
+        self.0.least(self.1)
     }
 }
 
 macro_rules! operator {
-    ($trait:ident, $name:ident, $intrinsic:ident) => {
-        impl $trait for F32x16 {
+    ($trait:ident, $name:ident, $of_shorts:ident) => {
+        impl<W: Wide> $trait for F32x16<W> {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
-                // SAFETY: the processor has AVX-512, since there are F32x16.
-                Self(unsafe { $intrinsic(self.0, other.0) })
+                Self(self.0, self.0.$of_shorts(self.1, other.1))
             }
         }
     };
 }
 
-operator!(Add, add, _mm512_add_ps);
-operator!(Sub, sub, _mm512_sub_ps);
-operator!(Mul, mul, _mm512_mul_ps);
-operator!(Div, div, _mm512_div_ps);
+operator!(Add, add, add_shorts);
+operator!(Sub, sub, sub_shorts);
+operator!(Mul, mul, mul_shorts);
+operator!(Div, div, div_shorts);
