@@ -6,7 +6,9 @@
 
 use vair::assembly;
 use vair::bake::Settings;
-use vair::bsdf::{AlongStrand, Chiang, ChiangParameters, HairMaterial};
+use vair::bsdf::{
+    AlongStrand, Chiang, ChiangParameters, DoubleCylinder, DoubleCylinderParameters, HairMaterial,
+};
 use vair::color::Rgb;
 use vair::groom::{self, GroomSettings};
 use vair::progress::{Cancel, Silent};
@@ -102,23 +104,32 @@ fn clear_fur_in_a_white_world_is_invisible() {
     }
 }
 
-/// The hair model, which loses no light either.
+/// The hair models, which lose no light either.
 #[test]
-fn clear_fur_of_the_hair_model_is_invisible() {
-    let model = Chiang::new(&ChiangParameters {
+fn clear_fur_of_hair_models_is_invisible() {
+    let chiang = Chiang::new(&ChiangParameters {
         sigma_a: Rgb::ZERO,
         ..ChiangParameters::default()
     });
+    let double = DoubleCylinder::new(&DoubleCylinderParameters {
+        sigma_a: Rgb::ZERO,
+        layers: 1.5,
+        ..DoubleCylinderParameters::default()
+    });
     let species = load("polar-bear", &[]);
-    let one = |_| HairMaterial::Chiang(AlongStrand::uniform(model));
-    let world = world_of(&species, species.classes.iter().map(one).collect());
-    for sampler in SAMPLERS {
-        let (mean, error, fur) = measure(&world, sampler);
-        let off = f64::from((mean - 1.0).abs().max_element()) / fur;
-        assert!(
-            off < 0.005 + 3.0 * error / fur,
-            "{sampler:?}: {mean} +- {error}"
-        );
+    for material in [
+        HairMaterial::Chiang(AlongStrand::uniform(chiang)),
+        HairMaterial::DoubleCylinder(AlongStrand::uniform(double)),
+    ] {
+        let world = world_of(&species, vec![material; species.classes.len()]);
+        for sampler in SAMPLERS {
+            let (mean, error, fur) = measure(&world, sampler);
+            let off = f64::from((mean - 1.0).abs().max_element()) / fur;
+            assert!(
+                off < 0.005 + 3.0 * error / fur,
+                "{sampler:?}: {mean} +- {error}"
+            );
+        }
     }
 }
 

@@ -6,7 +6,8 @@ use glam::Vec3;
 use rayon::prelude::*;
 use vair::bake::{Settings, bake};
 use vair::bsdf::{
-    AlongStrand, Bsdf, Chiang, ChiangParameters, HairMaterial, Place, TableSet, Zone,
+    AlongStrand, Bsdf, Chiang, ChiangParameters, DoubleCylinder, DoubleCylinderParameters,
+    HairMaterial, Place, TableSet, Zone,
 };
 use vair::fiber::Fiber;
 use vair::math::frame;
@@ -213,17 +214,41 @@ fn the_hair_model_samples_what_its_density_says() {
             ..ChiangParameters::default()
         });
         let material = HairMaterial::Chiang(AlongStrand::uniform(model));
-        for (i, (theta, across)) in [(0.1f64, 0.3), (-0.8, -0.9), (1.2, 0.0)]
-            .into_iter()
-            .enumerate()
-        {
-            let wo = frame::direction(theta, 0.0).as_vec3();
-            let at = Place {
-                across,
-                ..place(1.0)
-            };
-            let z = chi_squared(&material.at(at, wo, || 0.0, 0.5), i as u64, |_| 1.0);
-            assert!(z < LIMIT, "{beta_m} {theta} {across}: z = {z}");
-        }
+        agrees(&material, &format!("{beta_m} {beta_n}"));
+    }
+}
+
+#[test]
+fn the_double_cylinder_samples_what_its_density_says() {
+    // Medulla, its scattering, share and mean cosine of what goes back.
+    for (kappa, sigma_m_s, back_s, rho) in [
+        (0.7, 2.0, 0.5, 0.3),
+        (0.95, 9.0, 0.1, 0.9),
+        (0.3, 0.5, 1.0, 0.0),
+    ] {
+        let model = DoubleCylinder::new(&DoubleCylinderParameters {
+            kappa,
+            sigma_m_s,
+            back_s,
+            rho_s: rho,
+            rho_b: 0.5 * rho,
+            ..DoubleCylinderParameters::default()
+        });
+        let material = HairMaterial::DoubleCylinder(AlongStrand::uniform(model));
+        agrees(&material, &format!("{kappa} {sigma_m_s}"));
+    }
+}
+
+/// A material's samples agree with its density from some directions, at some places across the strand.
+fn agrees(material: &HairMaterial, name: &str) {
+    let seen = [(0.1f64, 0.3), (-0.8, -0.9), (1.2, 0.0)];
+    for (i, (theta, across)) in seen.into_iter().enumerate() {
+        let wo = frame::direction(theta, 0.0).as_vec3();
+        let at = Place {
+            across,
+            ..place(1.0)
+        };
+        let z = chi_squared(&material.at(at, wo, || 0.0, 0.5), i as u64, |_| 1.0);
+        assert!(z < LIMIT, "{name} {theta} {across}: z = {z}");
     }
 }

@@ -1,6 +1,6 @@
 //! Which scattering applies where along a strand.
 
-use super::{Bsdf, Chiang};
+use super::{Bsdf, Chiang, DoubleCylinder};
 use crate::color::Rgb;
 use crate::table::ScatterTable;
 use glam::Vec3;
@@ -14,6 +14,8 @@ pub enum HairMaterial {
     Tables(TableSet),
     /// The model of Chiang et al. 2016 for the same.
     Chiang(AlongStrand<Chiang>),
+    /// A double cylinder after Yan et al. 2015 for the same.
+    DoubleCylinder(AlongStrand<DoubleCylinder>),
 }
 
 /// Where a zone of pigment ends, counted from the tip.
@@ -91,6 +93,11 @@ impl<T> AlongStrand<T> {
             }],
             values: vec![value],
         }
+    }
+
+    /// One a dye and station, stations running fastest.
+    pub fn values(&self) -> &[T] {
+        &self.values
     }
 
     /// Something else at the same places, made of what is there.
@@ -195,18 +202,22 @@ impl HairMaterial {
                 let (model, _) = models.choose(place, u);
                 Bsdf::Chiang(model.lobe_at(wo, place.across))
             }
+            Self::DoubleCylinder(models) => {
+                let (model, _) = models.choose(place, u);
+                Bsdf::DoubleCylinder(model.lobe_at(wo, place.across))
+            }
         }
     }
 
     /// Whether it matters where across its width a strand is met.
     pub fn is_near_field(&self) -> bool {
-        matches!(self, Self::Chiang(_))
+        matches!(self, Self::Chiang(_) | Self::DoubleCylinder(_))
     }
 
     /// Whether any table tells azimuths apart.
     pub fn has_azimuths(&self) -> bool {
         match self {
-            Self::Isotropic(_) | Self::Chiang(_) => false,
+            Self::Isotropic(_) | Self::Chiang(_) | Self::DoubleCylinder(_) => false,
             Self::Tables(set) => {
                 let has = |table: &ScatterTable| !table.nodes().azimuths.is_averaged();
                 set.values.iter().any(has)

@@ -1,4 +1,4 @@
-//! How a strand scatters light: baked tables and a model in closed form behind one closed enum.
+//! How a strand scatters light: baked tables and models in closed form behind one closed enum.
 //!
 //! Everything is in the strand frame of [`crate::math::frame::strand_frame`]: +Z is the tangent,
 //! `wo` (toward the camera) lies in the half plane y = 0, x >= 0. `density` is the scattering
@@ -6,9 +6,12 @@
 //! what multiplies incoming radiance in the path integral. No other cosine appears.
 
 mod chiang;
+mod double_cylinder;
+mod lobes;
 mod material;
 
 pub use chiang::{Chiang, ChiangLobe, ChiangParameters};
+pub use double_cylinder::{DoubleCylinder, DoubleCylinderLobe, DoubleCylinderParameters};
 pub(crate) use material::bracket_zone;
 pub use material::{AlongStrand, CoatPart, HairMaterial, Place, TableSet, Zone};
 
@@ -28,6 +31,17 @@ pub struct BsdfSample {
     pub pdf: f32,
 }
 
+impl BsdfSample {
+    /// `None` where nothing can be drawn.
+    fn new(wi: Vec3, density: Rgb, pdf: f32) -> Option<Self> {
+        (pdf > 0.0 && pdf.is_finite()).then(|| Self {
+            wi,
+            weight: density / pdf,
+            pdf,
+        })
+    }
+}
+
 /// Scattering at one point of a strand toward one direction `wo`.
 #[derive(Clone, Copy, Debug)]
 pub enum Bsdf<'a> {
@@ -38,6 +52,8 @@ pub enum Bsdf<'a> {
     Table(Lobe<'a>),
     /// The model of Chiang et al. 2016.
     Chiang(ChiangLobe<'a>),
+    /// A double cylinder after Yan et al. 2015.
+    DoubleCylinder(DoubleCylinderLobe<'a>),
 }
 
 impl Bsdf<'_> {
@@ -47,6 +63,7 @@ impl Bsdf<'_> {
             Self::Isotropic(albedo) => *albedo / (4.0 * PI),
             Self::Table(lobe) => lobe.density(wi),
             Self::Chiang(lobe) => lobe.density_and_pdf(wi).0,
+            Self::DoubleCylinder(lobe) => lobe.density_and_pdf(wi).0,
         }
     }
 
@@ -56,6 +73,7 @@ impl Bsdf<'_> {
             Self::Isotropic(_) => 1.0 / (4.0 * PI),
             Self::Table(lobe) => self.table_pdf(lobe, lobe.density(wi)),
             Self::Chiang(lobe) => lobe.density_and_pdf(wi).1,
+            Self::DoubleCylinder(lobe) => lobe.density_and_pdf(wi).1,
         }
     }
 
@@ -68,6 +86,7 @@ impl Bsdf<'_> {
                 (density, self.table_pdf(lobe, density))
             }
             Self::Chiang(lobe) => lobe.density_and_pdf(wi),
+            Self::DoubleCylinder(lobe) => lobe.density_and_pdf(wi),
         }
     }
 
@@ -106,6 +125,7 @@ impl Bsdf<'_> {
                 })
             }
             Self::Chiang(lobe) => lobe.sample(u),
+            Self::DoubleCylinder(lobe) => lobe.sample(u),
         }
     }
 
@@ -121,6 +141,7 @@ impl Bsdf<'_> {
             Self::Isotropic(albedo) => *albedo,
             Self::Table(lobe) => lobe.albedo(),
             Self::Chiang(lobe) => lobe.albedo(),
+            Self::DoubleCylinder(lobe) => lobe.albedo(),
         }
     }
 }

@@ -1,7 +1,8 @@
-//! Maps of cells, frames, turns, triangles, splines, exponentials, a Bessel function, what is quick in single precision, steps, numbers eight at a time, unit vectors in 32 bits, the unicube map and Fresnel equations.
+//! Maps of cells, light in cylinders, frames, turns, triangles, splines, exponentials, a Bessel function, what is quick in single precision, steps, numbers eight at a time, unit vectors in 32 bits, the unicube map and Fresnel equations.
 
 pub(crate) mod bessel;
 pub(crate) mod cells;
+pub(crate) mod crossings;
 pub mod decay;
 pub mod ease;
 pub mod frame;

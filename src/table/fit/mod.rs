@@ -181,6 +181,26 @@ impl Model {
     }
 }
 
+#[cfg(test)]
+impl Model {
+    /// The model as it is fitted, for what is to agree with it.
+    ///
+    /// * `theta_q`: inclination of the query, radians. * `edges`: of the rows of inclinations.
+    /// * `shared`: the parameters in the order of a fit. * `absorption`: of one channel per radius.
+    /// * Returns means of `S cos(theta_i)` over each row and columns of 5 degrees from azimuth 0, both signs together.
+    pub(crate) fn far_field(
+        self,
+        theta_q: f64,
+        edges: &[f64],
+        shared: &[f64],
+        absorption: f64,
+    ) -> Vec<[f64; COLUMNS]> {
+        let lobes = self.evaluate(theta_q, edges, shared, &[absorption]);
+        let rows = 0..edges.len() - 1;
+        rows.map(|row| sum_of(&lobes, 0, row)).collect()
+    }
+}
+
 /// One row of one channel.
 fn sum_of(lobes: &[Lobe], channel: usize, row: usize) -> [f64; COLUMNS] {
     let mut sum = [0.0; COLUMNS];

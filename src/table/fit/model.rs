@@ -6,7 +6,7 @@ use super::data::COLUMNS;
 use super::lobes::{
     Entry, Lobe, OFFSETS, add_logistic, along, entries, exit_azimuth, logistic_scale, variance,
 };
-use crate::math::fresnel;
+use crate::math::{crossings, fresnel};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -77,6 +77,11 @@ impl Model {
         }
     }
 
+    /// Names of the parameters that all channels share, in order.
+    pub fn parameters(self) -> Vec<&'static str> {
+        self.shared().iter().map(|shared| shared.name).collect()
+    }
+
     pub(super) fn shared(self) -> &'static [Shared] {
         match self {
             Self::Chiang => &CHIANG,
@@ -90,19 +95,17 @@ impl Model {
     /// * `queries`: inclinations, radians, each with its share of the light. * `p`: the shared parameters.
     pub(super) fn absorption(self, queries: &[(f64, f64)], p: &[f64], albedo: &[f64]) -> Vec<f64> {
         let medulla = self.medulla(p);
-        let rays: Vec<(Entry, f64)> = queries
+        let rays: Vec<(Crossing, f64)> = queries
             .iter()
-            .flat_map(|&(theta, share)| {
-                entries(p[0], theta).map(move |entry| (entry, share / OFFSETS as f64))
+            .flat_map(|&(theta, share)| entries(p[0], theta).map(move |entry| (entry, share)))
+            .map(|(entry, share)| {
+                let crossing = Crossing::new(&entry, p[0], medulla.as_ref());
+                (crossing, share / OFFSETS as f64)
             })
             .collect();
         let scattered = |sigma: f64| -> f64 {
-            let of = |(entry, share): &(Entry, f64)| {
-                share
-                    * energies(entry, p[0], sigma, medulla.as_ref())
-                        .iter()
-                        .sum::<f64>()
-            };
+            let of =
+                |(ray, share): &(Crossing, f64)| share * ray.energies(sigma).iter().sum::<f64>();
             rays.iter().map(of).sum()
         };
         let solve = |&albedo: &f64| {
@@ -164,10 +167,9 @@ impl Model {
             .collect();
         let mut scattered = vec![0.0; absorption.len()];
         for entry in entries(p[0], theta_q) {
-            let energies: Vec<[f64; 5]> = absorption
-                .iter()
-                .map(|&sigma| energies(&entry, p[0], sigma, medulla.as_ref()))
-                .collect();
+            let crossing = Crossing::new(&entry, p[0], medulla.as_ref());
+            let energies: Vec<[f64; 5]> =
+                (absorption.iter().map(|&sigma| crossing.energies(sigma))).collect();
             let of = |lobe: usize| {
                 energies
                     .iter()
@@ -208,27 +210,47 @@ struct Medulla {
     path: f64,
 }
 
-/// Energies of R, TT, TRT, all the rest, and light scattered in the medulla, for a ray.
-fn energies(entry: &Entry, eta: f64, sigma: f64, medulla: Option<&Medulla>) -> [f64; 5] {
-    let crossing = 2.0 * entry.gamma_t.cos() / entry.cos_theta_t;
-    let Some(medulla) = medulla else {
-        let (f, _) = fresnel::dielectric(entry.cosine, eta);
-        let t = (-sigma * crossing).exp();
-        let tt = (1.0 - f).powi(2) * t;
-        let trt = tt * f * t;
-        return [f, tt, trt, trt * f * t / (1.0 - f * t), 0.0];
-    };
-    let (f, _) = fresnel::layered(entry.cosine, eta, medulla.layers);
-    let inside = (medulla.kappa.powi(2) - entry.gamma_t.sin().powi(2)).max(0.0);
-    let in_medulla = 2.0 * inside.sqrt() / entry.cos_theta_t;
-    let straight = (-medulla.scattering * in_medulla).exp();
-    let t = (-sigma * (crossing - in_medulla)).exp() * straight;
-    let tt = (1.0 - f).powi(2) * t;
-    let trt = tt * f * t;
-    // What leaves the straight path at its first crossings comes out after a path of its own.
-    let out = (-sigma * medulla.path).exp();
-    let scattered = (1.0 - f) * (1.0 - straight) * out * (1.0 + f * t);
-    [f, tt, trt, trt * f * t / (1.0 - f * t), scattered]
+/// What a ray meets, whatever the absorption.
+struct Crossing {
+    reflectance: f64,
+    /// Lengths in the cortex, radii: of a crossing, and of what the medulla scatters.
+    cortex: f64,
+    path: f64,
+    /// What scattering leaves of light that crosses the medulla.
+    straight: f64,
+}
+
+impl Crossing {
+    fn new(entry: &Entry, eta: f64, medulla: Option<&Medulla>) -> Self {
+        let crossing = 2.0 * entry.gamma_t.cos() / entry.cos_theta_t;
+        let Some(medulla) = medulla else {
+            return Self {
+                reflectance: fresnel::dielectric(entry.cosine, eta).0,
+                cortex: crossing,
+                path: 0.0,
+                straight: 1.0,
+            };
+        };
+        let inside = (medulla.kappa.powi(2) - entry.gamma_t.sin().powi(2)).max(0.0);
+        let in_medulla = 2.0 * inside.sqrt() / entry.cos_theta_t;
+        Self {
+            reflectance: fresnel::layered(entry.cosine, eta, medulla.layers).0,
+            cortex: crossing - in_medulla,
+            path: medulla.path,
+            straight: (-medulla.scattering * in_medulla).exp(),
+        }
+    }
+
+    /// Of R, TT, TRT, all the rest, and light scattered in the medulla.
+    fn energies(&self, sigma: f64) -> [f64; 5] {
+        let f = self.reflectance;
+        let t = (-sigma * self.cortex).exp() * self.straight;
+        let [r, tt, trt, rest] = crossings::straight(f, t);
+        // What leaves the straight path comes out after a path of its own.
+        let out = (-sigma * self.path).exp();
+        let scattered = crossings::scattered(f, t, 1.0 - self.straight) * out;
+        [r, tt, trt, rest, scattered]
+    }
 }
 
 /// Per radian, about straight through; `rho` below zero scatters back. Means over the columns.
