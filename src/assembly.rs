@@ -1,21 +1,22 @@
 //! From a species to what a scene needs: the one library module that knows bake and renderer.
 
 mod colors;
+mod fitted;
 mod looks;
 
 pub use colors::match_colors;
+pub use fitted::{Fitted, fitted};
 pub use looks::looks;
 
 use crate::bake::{BakeError, Baked, Cache, Settings, find_or_bake};
 use crate::blame::Blame;
-use crate::bsdf::{Chiang, ChiangParameters, CoatPart, HairMaterial, TableSet, Zone};
-use crate::color::Rgb;
+use crate::bsdf::{CoatPart, HairMaterial, TableSet, Zone};
 use crate::groom::GroomError;
 use crate::progress::{Cancel, Progress};
 use crate::render::RenderError;
 use crate::scene::SceneError;
 use crate::species::{HairClass, PigmentBand, Section, Species, Station};
-use crate::table::{Model, Provenance, ScatterMaps, ScatterTable, TableError, TableFile, Undyed};
+use crate::table::{Provenance, ScatterMaps, ScatterTable, TableError, TableFile, Undyed};
 
 /// Materials that cannot be made.
 #[derive(Debug, thiserror::Error)]
@@ -235,32 +236,6 @@ fn baked_source(
         true => Ok(Source::Baked(baked.table)),
         false => Err(BakeError::Stopped.into()),
     }
-}
-
-/// The hair model of Chiang et al. 2016 in place of each table, as near to it as it comes.
-///
-/// # Errors
-/// Tables that tell azimuths apart: the model cannot.
-pub fn fitted(materials: &[HairMaterial]) -> Result<Vec<HairMaterial>, TableError> {
-    let fit = |table: &ScatterTable| {
-        let fit = Model::Chiang.fit(&table.maps(), &[0, 1, 2])?;
-        let number = |name: &str| fit.parameter(name).map(|v| v as f32);
-        let usual = ChiangParameters::default();
-        Ok::<_, TableError>(Chiang::new(&ChiangParameters {
-            sigma_a: Rgb::from_array(std::array::from_fn(|c| fit.absorption[c] as f32)),
-            beta_m: number("beta_m").unwrap_or(usual.beta_m),
-            beta_n: number("beta_n").unwrap_or(usual.beta_n),
-            alpha_deg: number("alpha_deg").unwrap_or(usual.alpha_deg),
-            eta: number("eta").unwrap_or(usual.eta),
-        }))
-    };
-    let material = |material: &HairMaterial| {
-        Ok(match material {
-            HairMaterial::Tables(tables) => HairMaterial::Chiang(tables.try_map(fit)?),
-            other => other.clone(),
-        })
-    };
-    materials.iter().map(material).collect()
 }
 
 /// The parts of a coat, and the dyes that they need: pigment that occurs twice is dyed once.

@@ -193,6 +193,24 @@ fn compare_pack_and_fit_work_together() {
     assert!(std::fs::read(at("d.png")).unwrap().starts_with(b"\x89PNG"));
     let fitted = json(&["fit", "small.exr", "--model", "chiang", "--json"]);
     assert_eq!(fitted["fits"][0]["lobes"].as_array().unwrap().len(), 4);
+    let output = vair()
+        .current_dir(folder.path())
+        .args("table fit small.exr --level 0 --model double-cylinder".split(' '))
+        .output()
+        .unwrap();
+    // What it prints can be pasted.
+    let text = String::from_utf8(output.stdout).unwrap();
+    let mut lines = text.lines().map(str::trim);
+    let options = lines.find_map(|line| line.strip_prefix("vair render"));
+    let mut render = vair();
+    let rendered = render
+        .current_dir(folder.path())
+        .args("render human --skin ball --strands 300 --res 16x12 --spp 1 -o a.png".split(' '))
+        .args(options.unwrap().split_whitespace())
+        .output()
+        .unwrap();
+    let stderr = String::from_utf8_lossy(&rendered.stderr);
+    assert!(rendered.status.success(), "{text} {stderr}");
     let info = json(&["info", "small.exr", "--json"]);
     assert_eq!(info["bins"][0]["ledger"][1]["emitted"], PHOTON * 1000);
 

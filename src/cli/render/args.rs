@@ -1,7 +1,7 @@
 //! Arguments of `vair render`.
 
 use super::{live, output, parse};
-use crate::bsdf::ChiangParameters;
+use crate::bsdf::{ChiangParameters, DoubleCylinderParameters};
 use crate::cli::bake::{parse_count, parse_share, parse_time};
 use crate::cli::color;
 use crate::cli::skin::SkinArgs;
@@ -17,7 +17,7 @@ use std::time::Duration;
   vair render polar-bear --env sky --res 1280x720 --spp 128 -o bear.png -o bear.exr
   vair render harbor-seal --azimuths 8 -o seal.png
   vair render red-fox --table guard-small.exr --table under-small.exr -o fox.png
-  vair render red-fox --model chiang-fit -o shader.png
+  vair render red-fox --model double-cylinder-fit -o shader.png
   vair render cat --coat leopard -o leopard.png
   vair render alpaca --color '#c8642a' -o rusty.png
   vair render mink --skin sofa.obj --strands 1e6 -o sofa.png
@@ -82,8 +82,8 @@ pub(in crate::cli) struct Args {
     /// Adds mattes by name to the EXR: hair classes and zones of the coat, skin and ground, after Cryptomatte.
     #[arg(long)]
     pub(super) cryptomatte: bool,
-    /// What scatters light: the baked tables, the hair model of Chiang et al. 2016 (Mitsuba, pbrt and
-    /// Cycles have it too) with given numbers, or that model as near to the tables as it comes.
+    /// What scatters light: the baked tables, a hair model with given numbers, or a hair model as near to the
+    /// tables as it comes.
     #[arg(long, value_enum, default_value = "table")]
     pub(super) model: ModelArg,
     /// Numbers of `--model chiang`; absorption is per radius.
@@ -95,6 +95,16 @@ pub(in crate::cli) struct Args {
         allow_hyphen_values = true
     )]
     pub(super) chiang: ChiangParameters,
+    /// Numbers of `--model double-cylinder`, of which others than these may be left out; absorption is that of the
+    /// cortex, per radius of the strand, and so is scattering in the medulla. `vair table fit` prints them.
+    #[arg(
+        long,
+        value_parser = parse::double_cylinder,
+        value_name = "KEY=VALUE,..",
+        default_value = DOUBLE_CYLINDER,
+        allow_hyphen_values = true
+    )]
+    pub(super) double_cylinder: DoubleCylinderParameters,
     /// Also writes strands, skin, light and camera to this folder as a scene for Mitsuba 3; needs
     /// `--model chiang`.
     #[arg(long, value_name = "FOLDER")]
@@ -192,8 +202,28 @@ pub(super) enum FilterArg {
 pub(super) enum ModelArg {
     /// Photons baked into tables.
     Table,
-    /// The model with the numbers of `--chiang`.
+    /// Chiang et al. 2016, the hair shader of Mitsuba, pbrt and Cycles, with the numbers of `--chiang`.
     Chiang,
-    /// The model fitted to the tables.
+    /// The same, fitted to the tables.
     ChiangFit,
+    /// Cuticle, cortex and a medulla that scatters, after Yan et al. 2015, with the numbers of
+    /// `--double-cylinder`.
+    DoubleCylinder,
+    /// The same, fitted to the tables.
+    DoubleCylinderFit,
 }
+
+impl ModelArg {
+    /// The option that gives its numbers, if they are given.
+    pub(super) fn numbers(self) -> Option<&'static str> {
+        match self {
+            Self::Chiang => Some("--chiang"),
+            Self::DoubleCylinder => Some("--double-cylinder"),
+            Self::Table | Self::ChiangFit | Self::DoubleCylinderFit => None,
+        }
+    }
+}
+
+/// The usual numbers of a double cylinder.
+pub(super) const DOUBLE_CYLINDER: &str = "sigma_a=0.06:0.10:0.20,beta_m=0.3,beta_n=0.3,alpha=2,eta=1.55,layers=0.5,\
+     kappa=0.7,sigma_m_s=2,path_s=2,beta_m_s=0.6,rho_s=0.3,back_s=0.5,beta_m_b=0.6,rho_b=0.3";

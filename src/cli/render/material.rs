@@ -4,12 +4,12 @@ use super::args::{Args, ModelArg};
 use crate::assembly::{self, StationTables};
 use crate::bake::{Cache, Settings};
 use crate::blame::Blame;
-use crate::bsdf::{AlongStrand, Chiang, HairMaterial};
+use crate::bsdf::{AlongStrand, Chiang, DoubleCylinder, HairMaterial};
 use crate::cli::{Console, Failure, color};
 use crate::groom::GroomSettings;
 use crate::skin::Skin;
 use crate::species::Species;
-use crate::table::TableFile;
+use crate::table::{Model, TableFile};
 use std::path::Path;
 
 /// A table whose maps the renderer can look up.
@@ -39,9 +39,19 @@ pub(super) fn materials(
     grown: &GroomSettings,
     console: &Console,
 ) -> Result<Vec<HairMaterial>, Failure> {
-    if args.model == ModelArg::Chiang {
-        let one = || HairMaterial::Chiang(AlongStrand::uniform(Chiang::new(&args.chiang)));
-        return Ok(species.classes.iter().map(|_| one()).collect());
+    let given_numbers = match args.model {
+        ModelArg::Chiang => {
+            let model = Chiang::new(&args.chiang);
+            Some(HairMaterial::Chiang(AlongStrand::uniform(model)))
+        }
+        ModelArg::DoubleCylinder => {
+            let model = DoubleCylinder::new(&args.double_cylinder);
+            Some(HairMaterial::DoubleCylinder(AlongStrand::uniform(model)))
+        }
+        ModelArg::Table | ModelArg::ChiangFit | ModelArg::DoubleCylinderFit => None,
+    };
+    if let Some(material) = given_numbers {
+        return Ok(vec![material; species.classes.len()]);
     }
     let cache = if args.no_cache {
         None
@@ -58,11 +68,18 @@ pub(super) fn materials(
     let tables = StationTables::new(species, given, &bake, cache.as_ref(), console, cancel)?;
     color::match_colors(species, &tables, skin, grown, console)?;
     let materials = tables.materials(species)?;
-    match args.model {
-        ModelArg::ChiangFit => {
-            console.say("fitting chiang");
-            Ok(assembly::fitted(&materials)?)
-        }
-        _ => Ok(materials),
-    }
+    let model = match args.model {
+        ModelArg::ChiangFit => Model::Chiang,
+        ModelArg::DoubleCylinderFit => Model::DoubleCylinder,
+        _ => return Ok(materials),
+    };
+    console.say(format!("fitting {}", model.name()));
+    let fitted = assembly::fitted(&materials, model, console, cancel)?;
+    let [least, most] = [f64::min, f64::max].map(|of| fitted.errors.iter().copied().reduce(of));
+    console.say(format!(
+        "off the tables by {:.0} to {:.0} % (S)",
+        100.0 * least.unwrap_or_default(),
+        100.0 * most.unwrap_or_default(),
+    ));
+    Ok(fitted.materials)
 }

@@ -48,15 +48,17 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     if args.mitsuba.is_some() && args.model != ModelArg::Chiang {
         return Err(Failure::with_help(
             Blame::Input,
-            "--mitsuba writes the numbers of a hair model, and the picture is of baked tables",
+            "--mitsuba writes the numbers of Chiang's hair model, and the picture is not of it",
             "add --model chiang, with --chiang for other numbers than the usual",
         ));
     }
-    if args.color.is_some() && args.model == ModelArg::Chiang {
+    if let Some(option) = args.model.numbers()
+        && args.color.is_some()
+    {
         return Err(Failure::with_help(
             Blame::Input,
             "--color dyes baked tables, and the picture is of a hair model with numbers of its own",
-            "leave out --model chiang, or give its absorption: --chiang sigma_a=R:G:B",
+            format!("leave out --model, or give its absorption: {option} sigma_a=R:G:B"),
         ));
     }
     for output in &args.output {
@@ -216,9 +218,14 @@ fn identity(args: &Args, species: &species::Species, groom: &Groom, scene: &Scen
     if args.azimuths != 1 {
         settings += &format!(" azimuths {}", args.azimuths);
     }
-    if args.model != ModelArg::Table {
-        settings += &format!(" model {:?} {:?}", args.model, args.chiang);
-    }
+    settings += &match args.model {
+        ModelArg::Table => String::new(),
+        ModelArg::Chiang | ModelArg::ChiangFit => {
+            format!(" model {:?} {:?}", args.model, args.chiang)
+        }
+        ModelArg::DoubleCylinder => format!(" model {:?} {:?}", args.model, args.double_cylinder),
+        ModelArg::DoubleCylinderFit => format!(" model {:?}", args.model),
+    };
     settings += &format!(" tables {:?} ground {}", args.table, !args.no_ground);
     if args.env_visible {
         settings += " env-visible";

@@ -164,9 +164,12 @@ fn text(fit: &Fit, names: &[String]) -> String {
             percent(lobe.error)
         );
     }
-    if fit.model == Model::Chiang {
-        out.push_str(&paste(fit));
-    }
+    out.push_str("\n  to paste (absorption: the channels in order)\n");
+    out.push_str(&match fit.model {
+        Model::Chiang => words_of_shaders(fit),
+        Model::DoubleCylinder => String::new(),
+    });
+    out.push_str(&option_of_render(fit));
     out
 }
 
@@ -189,19 +192,34 @@ fn meaning(name: &str) -> &'static str {
     }
 }
 
-/// The same in the words of shaders that have this model.
-fn paste(fit: &Fit) -> String {
+/// Absorption of three channels.
+fn absorption(fit: &Fit) -> [f64; 3] {
+    std::array::from_fn(|c| fit.absorption[c.min(fit.absorption.len() - 1)])
+}
+
+/// The same in the words of shaders that have Chiang's model.
+fn words_of_shaders(fit: &Fit) -> String {
     let of = |name: &str| fit.parameter(name).unwrap_or_default();
     let (eta, m, n, alpha) = (of("eta"), of("beta_m"), of("beta_n"), of("alpha_deg"));
-    let sigma = |i: usize| fit.absorption[i.min(fit.absorption.len() - 1)];
-    let (r, g, b) = (sigma(0), sigma(1), sigma(2));
+    let [r, g, b] = absorption(fit);
     format!(
-        "\n  to paste (absorption: the channels in order)\n\
-         \x20 pbrt             Material \"hair\" \"rgb sigma_a\" [{r:.4} {g:.4} {b:.4}] \"float eta\" {eta:.4} \
+        "  pbrt             Material \"hair\" \"rgb sigma_a\" [{r:.4} {g:.4} {b:.4}] \"float eta\" {eta:.4} \
          \"float beta_m\" {m:.4} \"float beta_n\" {n:.4} \"float alpha\" {alpha:.3}\n\
          \x20 Mitsuba 3 hair   sigma_a {r:.4} {g:.4} {b:.4}, int_ior {eta:.4}, longitudinal_roughness {m:.4}, \
          azimuthal_roughness {n:.4}, scale_tilt {alpha:.3}\n\
          \x20 Principled Hair  Chiang, absorption coefficient {r:.4} {g:.4} {b:.4}, roughness {m:.4}, radial roughness \
          {n:.4}, coat 0, IOR {eta:.4}, offset {alpha:.3} degrees\n"
     )
+}
+
+/// The same as options of `vair render`.
+fn option_of_render(fit: &Fit) -> String {
+    let model = fit.model.name();
+    let [r, g, b] = absorption(fit);
+    let mut out =
+        format!("  vair render      --model {model} --{model} sigma_a={r:.4}:{g:.4}:{b:.4}");
+    for (name, value) in &fit.shared {
+        let _ = write!(out, ",{}={value:.4}", name.trim_end_matches("_deg"));
+    }
+    out + "\n"
 }
