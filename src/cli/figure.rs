@@ -17,10 +17,11 @@ use std::path::{Path, PathBuf};
   vair figure lobes -o lobes.png                      # Figure 4: scattering functions at 45 degrees
   vair figure tress -o tress.png                      # Figure 5: human hair
   vair figure medullae -o medullae.png                # one animal with three medullae, all else equal
+  vair figure models -o models.png                    # one animal by tables and by hair models fitted to them
   vair figure furs --quality full --panels furs -o furs.png
   vair figure my-figure.toml -o mine.png              # a recipe of yours; --print shows one to begin with")]
 pub(super) struct Args {
-    /// A built-in figure (furs, lobes, tress, medullae) or the path of a recipe.
+    /// A built-in figure (furs, lobes, tress, medullae, models) or the path of a recipe.
     name: String,
     /// How much work goes into it.
     #[arg(long, value_enum, default_value = "draft")]
@@ -48,13 +49,17 @@ enum QualityArg {
 }
 
 /// Recipes by name.
-const FIGURES: [(&str, &str); 4] = [
+const FIGURES: [(&str, &str); 5] = [
     ("furs", include_str!("../../procedural/figures/furs.toml")),
     ("lobes", include_str!("../../procedural/figures/lobes.toml")),
     ("tress", include_str!("../../procedural/figures/tress.toml")),
     (
         "medullae",
         include_str!("../../procedural/figures/medullae.toml"),
+    ),
+    (
+        "models",
+        include_str!("../../procedural/figures/models.toml"),
     ),
 ];
 
