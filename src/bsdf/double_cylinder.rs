@@ -190,7 +190,7 @@ impl DoubleCylinderLobe<'_> {
     }
 
     /// * `sin`, `cos`: of the inclination. * `azimuth`: at most half a turn either way. * `cos_azimuth`: its
-    /// cosine, 1 straight back.
+    ///   cosine, 1 straight back.
     #[inline(always)]
     fn toward(&self, sin: f32, cos: f32, azimuth: f32, cos_azimuth: f32) -> (Rgb, f32) {
         let (density, pdf) = self.straight.toward(sin, cos, azimuth);
