@@ -4,7 +4,11 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod task;
 
+#[cfg(all(test, target_arch = "x86_64"))]
+pub(crate) use task::on_avx2;
+pub(crate) use task::{Task, on_this_processor};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use {avx2::Avx2, avx512::Avx512};
 
@@ -26,6 +30,28 @@ impl Children<'_> {
     pub(crate) fn number(&self, k: u32) -> u32 {
         self.first
             .wrapping_add(u32::from(self.places[k as usize % CHILDREN]))
+    }
+}
+
+/// Up to eight children of two kinds: those of the first kind come first, and the numbers of each kind follow one another.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(crate) struct Eight {
+    /// What is added to a child's place.
+    pub(crate) first: [u32; 2],
+    /// How many are of the first kind.
+    pub(crate) split: u32,
+}
+
+impl Eight {
+    /// The bit of a number that says that it is of the second kind.
+    pub(crate) const SECOND: u32 = 1 << 31;
+
+    /// Number of a child, without a branch.
+    #[inline(always)]
+    pub(crate) fn number(&self, k: u32) -> u32 {
+        let second = u32::from(k >= self.split);
+        self.first[second as usize].wrapping_add(k) | second << 31
     }
 }
 
@@ -62,6 +88,26 @@ pub(crate) trait Lanes {
     ///
     /// * `least`, `most`: corners of the boxes, 128 more than they are, the fourth number of no meaning.
     fn facing(least: &[[u8; 4]; 8], most: &[[u8; 4]; 8], way: &Way) -> [u32; 2];
+    /// Puts the chosen of eight children in a row, the nearest last, and says how many; what is behind them in the row
+    /// has no meaning.
+    ///
+    /// * `begins`: where a ray enters their boxes, not negative; may be rounded down by some parts in a million.
+    #[inline(always)]
+    fn row(chosen: u32, begins: &[f32; 8], children: &Eight, row: &mut [Aside; 8]) -> usize {
+        let mut count = 0;
+        for k in (0..8).filter(|k| chosen >> k & 1 != 0) {
+            let other = Aside::new(begins[k as usize], children.number(k));
+            let mut at = count;
+            while at > 0 && row[at - 1] < other {
+                row[at] = row[at - 1];
+                at -= 1;
+            }
+            row[at] = other;
+            count += 1;
+        }
+        count
+    }
+
     /// Eight from the first, the fifth and the ninth on.
     fn head(x: Self::Sixteen) -> Self::Eight;
     fn middle(x: Self::Sixteen) -> Self::Eight;

@@ -158,7 +158,7 @@ impl Entry {
 
     /// Both ways at the first boundary, if it is a dielectric one, and the part of the photon, in units of
     /// 2^-32, that is reflected.
-    fn fork(&self, fiber: &Fiber, hit: &Hit, rng: &mut Rng) -> Option<(u64, Fork)> {
+    pub(super) fn fork(&self, fiber: &Fiber, hit: &Hit, rng: &mut Rng) -> Option<(u64, Fork)> {
         let ratio = Ratio {
             eta: fiber.eta(Region::Outside, hit.to),
             inverse: fiber.eta(hit.to, Region::Outside),

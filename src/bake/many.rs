@@ -4,6 +4,7 @@ use super::Flight;
 use super::entry::{Photon, fly, fly_forked};
 #[cfg(target_arch = "x86_64")]
 use super::packet::Company;
+use super::turns;
 use crate::fiber::Fiber;
 use crate::table::PHOTON;
 
@@ -35,6 +36,9 @@ impl<'a> Many<'a> {
         if let Some(company) = &self.company {
             return company.fly(photons, forked, max_events, book);
         }
+        if let Some(searches) = self.fiber.turns() {
+            return turns::fly(self.fiber, searches, photons, forked, max_events, book);
+        }
         for photon in photons {
             if forked {
                 fly_forked(self.fiber, &photon, max_events, &mut book);
@@ -46,7 +50,8 @@ impl<'a> Many<'a> {
 }
 
 /// Flies many photons, each as [`fly`] does, or [`fly_forked`] if `forked`, to the bit; where the processor
-/// has AVX-512 or AVX2 and the fiber is clear keratin and air, eight at a time and up to several times as fast.
+/// has AVX-512 or AVX2 and the fiber is clear keratin and air, eight at a time and up to several times as fast; where
+/// the fiber is a mesh, by turns.
 ///
 /// * `book`: gets every flight and its part of a photon in units of 2^-32, in any order.
 pub fn fly_all(

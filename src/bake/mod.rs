@@ -35,6 +35,7 @@ mod sums;
 mod sums_file;
 mod tally;
 mod touched;
+mod turns;
 
 pub use cache::{Cache, CacheSize};
 pub use checkpoint::{Checkpoint, Found, drive};

@@ -2,7 +2,7 @@
 
 use super::boundary;
 use super::microfacet::{self, Turn};
-use crate::fiber::{Fiber, Hit, Medium, Optics, Region};
+use crate::fiber::{Fiber, Hit, HitState, Medium, Optics, Region};
 use crate::math::turn::unit_vector_of;
 use crate::sampling::Rng;
 use glam::{DVec2, DVec3};
@@ -65,36 +65,95 @@ pub fn follow(
 #[inline]
 pub(super) fn follow_from(
     fiber: &Fiber,
-    mut p: DVec3,
-    mut dir: DVec3,
+    p: DVec3,
+    dir: DVec3,
     mut hit: Hit,
     mut first: Option<Turn>,
     rng: &mut Rng,
     max_events: u32,
 ) -> Flight {
-    let mut flight = Flight {
-        query: DVec2::new((1.0 - dir.z * dir.z).max(0.0).sqrt(), -dir.z),
-        path_um: 0.0,
-        share: 1.0,
-        events: 0,
-        end: End::Missed,
-    };
-
-    let mut region = Region::Outside;
+    let mut path = Path::new(p, dir);
     loop {
-        // At a boundary: go through or turn back.
+        if let Some(end) = path.decide(fiber, &hit, first.take(), rng) {
+            return path.ended(end);
+        }
+        hit = loop {
+            if path.is_spent(max_events) {
+                return path.ended(End::Truncated);
+            }
+            let next = fiber.next_hit(path.p, path.dir, path.region, path.from);
+            match path.go(fiber, next, rng, max_events) {
+                Gone::Met(hit) => break hit,
+                Gone::Scattered => {}
+                Gone::Ended(end) => return path.ended(end),
+            }
+        };
+    }
+}
+
+/// A photon on its way, with what has become of it so far.
+pub(super) struct Path {
+    pub(super) p: DVec3,
+    pub(super) dir: DVec3,
+    pub(super) region: Region,
+    /// What it starts on.
+    pub(super) from: Option<HitState>,
+    flight: Flight,
+}
+
+/// What came of a way through a region.
+pub(super) enum Gone {
+    /// The photon is at a boundary.
+    Met(Hit),
+    /// It goes on in the same region elsewhere.
+    Scattered,
+    Ended(End),
+}
+
+impl Path {
+    /// A photon that comes from outside to a place on a boundary.
+    #[inline]
+    pub(super) fn new(p: DVec3, dir: DVec3) -> Self {
+        Self {
+            p,
+            dir,
+            region: Region::Outside,
+            from: None,
+            flight: Flight {
+                query: DVec2::new((1.0 - dir.z * dir.z).max(0.0).sqrt(), -dir.z),
+                path_um: 0.0,
+                share: 1.0,
+                events: 0,
+                end: End::Missed,
+            },
+        }
+    }
+
+    /// At a boundary: goes through or turns back. The end, if it is one.
+    ///
+    /// * `first`: what was decided before.
+    #[inline]
+    pub(super) fn decide(
+        &mut self,
+        fiber: &Fiber,
+        hit: &Hit,
+        first: Option<Turn>,
+        rng: &mut Rng,
+    ) -> Option<End> {
+        let Self { dir, region, .. } = *self;
+        let flight = &mut self.flight;
         let ratio = microfacet::Ratio {
             eta: fiber.eta(region, hit.to),
             inverse: fiber.eta(hit.to, region),
         };
-        let mut from = Some(hit.state);
+        self.from = Some(hit.state);
         let optics = fiber.optics(hit.part);
         if ratio.eta == 1.0 && matches!(optics, Optics::Dielectric { .. }) {
-            region = hit.to;
+            self.region = hit.to;
         } else {
             flight.events += 1;
             let turned = match optics {
-                _ if first.is_some() => first.take(),
+                _ if first.is_some() => first,
                 Optics::Dielectric { roughness } if *roughness > 0.0 => {
                     microfacet::rough(dir, hit.normal, ratio, *roughness, rng)
                 }
@@ -109,55 +168,69 @@ pub(super) fn follow_from(
                 }
             };
             let Some(turned) = turned else {
-                flight.end = End::Lost;
-                return flight;
+                return Some(End::Lost);
             };
-            dir = turned.dir;
+            self.dir = turned.dir;
             if turned.transmitted {
-                region = hit.to;
+                self.region = hit.to;
             }
         }
-        if flight.share < FAINT && is_taken(&mut flight.share, rng) {
-            flight.end = End::Absorbed;
-            return flight;
-        }
-        // To the next boundary, with scatterings on the way.
-        let medium = fiber.medium(region);
-        hit = loop {
-            let next = fiber.next_hit(p, dir, region, from);
-            if region == Region::Outside {
-                match next {
-                    None => flight.end = End::Escaped(dir),
-                    Some(_) if flight.events >= max_events => flight.end = End::Truncated,
-                    Some(hit) => break hit,
-                }
-                return flight;
-            }
+        (flight.share < FAINT && is_taken(&mut flight.share, rng)).then_some(End::Absorbed)
+    }
+
+    /// Whether it is inside with all its events used up.
+    #[inline]
+    pub(super) fn is_spent(&self, max_events: u32) -> bool {
+        self.region != Region::Outside && self.flight.events >= max_events
+    }
+
+    /// Goes to the next boundary, unless it scatters on the way. Not for one that is spent.
+    ///
+    /// * `next`: the boundary, as [`Fiber::next_hit`] says.
+    #[inline]
+    pub(super) fn go(
+        &mut self,
+        fiber: &Fiber,
+        next: Option<Hit>,
+        rng: &mut Rng,
+        max_events: u32,
+    ) -> Gone {
+        let Self { p, dir, region, .. } = *self;
+        let flight = &mut self.flight;
+        let next = match next {
+            Some(next) => next,
+            None if region == Region::Outside => return Gone::Ended(End::Escaped(dir)),
+            None => return Gone::Ended(End::Lost),
+        };
+        if region == Region::Outside {
             if flight.events >= max_events {
-                flight.end = End::Truncated;
-                return flight;
+                return Gone::Ended(End::Truncated);
             }
-            let Some(next) = next else {
-                flight.end = End::Lost;
-                return flight;
-            };
+        } else {
+            let medium = fiber.medium(region);
             if medium.scattering_per_um > 0.0 {
                 let free = -(1.0 - rng.uniform()).ln() / medium.scattering_per_um;
                 if free < next.t {
                     flight.events += 1;
                     flight.path_um += fiber.pigment_um(p, dir, region, free);
                     flight.share *= transmitted(medium, free);
-                    p += free * dir;
-                    dir = henyey_greenstein(dir, medium.asymmetry, rng);
-                    from = None;
-                    continue;
+                    self.p += free * dir;
+                    self.dir = henyey_greenstein(dir, medium.asymmetry, rng);
+                    self.from = None;
+                    return Gone::Scattered;
                 }
             }
             flight.path_um += next.pigment_um;
             flight.share *= transmitted(medium, next.t);
-            break next;
-        };
-        p += hit.t * dir;
+        }
+        self.p += next.t * dir;
+        Gone::Met(next)
+    }
+
+    /// The flight that it was.
+    #[inline]
+    pub(super) fn ended(&self, end: End) -> Flight {
+        Flight { end, ..self.flight }
     }
 }
 

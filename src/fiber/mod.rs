@@ -38,7 +38,9 @@ pub use mesh::MeshPart;
 pub use optics::{Medium, Optics, Part, Region};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use packet::{Hits, PacketShell, Rays};
+pub(crate) use trace::Ray;
 pub use triangles::{MeshError, Places};
+pub(crate) use triangles::{SEARCHES, Turns};
 
 use crate::math::symmetry::Symmetry;
 use crate::species::{self, CuticlePattern, FiberMesh, MedullaKind, Structure};

@@ -3,8 +3,28 @@
 use super::medulla::Rays;
 use super::section::UnitRay;
 use super::surface::{Inward, OuterHit, OuterState, Surface};
+use super::triangles::Turns;
 use super::{Element, Fiber, Hit, HitState, Part, Region};
 use glam::DVec3;
+
+/// What [`Fiber::next_hit`] is asked.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ray {
+    pub(crate) origin: DVec3,
+    pub(crate) dir: DVec3,
+    pub(crate) region: Region,
+    pub(crate) from: Option<HitState>,
+}
+
+impl Ray {
+    /// The triangle of a mesh that it starts on.
+    pub(super) fn triangle(&self) -> Option<(u32, Part)> {
+        match self.from?.element {
+            Element::Triangle { source, part } => Some((source, part)),
+            _ => None,
+        }
+    }
+}
 
 impl Fiber {
     /// The next boundary of a ray that travels in `region` from `origin` along unit `dir`.
@@ -21,9 +41,13 @@ impl Fiber {
         from: Option<HitState>,
     ) -> Option<Hit> {
         if let Some(triangles) = &self.triangles {
-            let mut hit = triangles.next_hit(origin, dir, region, from)?;
-            hit.pigment_um = self.pigment_um(origin, dir, region, hit.t);
-            return Some(hit);
+            let ray = Ray {
+                origin,
+                dir,
+                region,
+                from,
+            };
+            return Some(self.with_pigment(&ray, triangles.next_hit(&ray)?));
         }
         let rays = Rays {
             origin,
@@ -89,6 +113,19 @@ impl Fiber {
         };
         hit.pigment_um = self.pigment_on(&rays, region, hit.t);
         Some(hit)
+    }
+
+    /// A triangle that a ray has met, with the pigment on the way.
+    #[inline]
+    pub(super) fn with_pigment(&self, ray: &Ray, hit: Hit) -> Hit {
+        let pigment_um = self.pigment_um(ray.origin, ray.dir, ray.region, hit.t);
+        Hit { pigment_um, ..hit }
+    }
+
+    /// Searches of several rays by turns, where that is faster than one after the other.
+    pub(crate) fn turns(&self) -> Option<Turns<'_>> {
+        let triangles = self.triangles.as_ref()?;
+        Some(Turns::new(self, triangles))
     }
 
     /// The way of a ray that ends within `region`, at a scattering, times the pigment along it,

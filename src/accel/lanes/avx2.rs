@@ -6,7 +6,7 @@
               of arrays as long as what is read"
 )]
 
-use super::{CHILDREN, Lanes, Numbers, Way, both};
+use super::{Aside, CHILDREN, Eight, Lanes, Numbers, Way, both};
 use glam::Vec4;
 use std::arch::x86_64::*;
 
@@ -126,6 +126,36 @@ impl Lanes for Avx2 {
         }
     }
 
+    /// Sorted without a branch.
+    #[inline(always)]
+    fn row(chosen: u32, begins: &[f32; 8], children: &Eight, row: &mut [Aside; 8]) -> usize {
+        unsafe {
+            let places = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+            let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let is_chosen = _mm256_and_si256(_mm256_set1_epi32(chosen as i32), bits);
+            let is_chosen = _mm256_cmpeq_epi32(is_chosen, bits);
+            // Distances with places in their last bits, more than 0; 0 for the others.
+            let begins = _mm256_loadu_si256(begins.as_ptr().cast());
+            let begins = _mm256_andnot_si256(_mm256_set1_epi32(15), begins);
+            let marks = _mm256_or_si256(places, _mm256_set1_epi32(8));
+            let keys = sort_eight(_mm256_and_si256(_mm256_or_si256(begins, marks), is_chosen));
+            let is_first = _mm256_cmpgt_epi32(_mm256_set1_epi32(children.split as i32), places);
+            let [first, second] = children.first;
+            let first = _mm256_add_epi32(_mm256_set1_epi32(first as i32), places);
+            let second = _mm256_add_epi32(_mm256_set1_epi32(second as i32), places);
+            let second = _mm256_or_si256(second, _mm256_set1_epi32(Eight::SECOND as i32));
+            let numbers = _mm256_blendv_epi8(second, first, is_first);
+            let numbers = _mm256_permutevar8x32_epi32(numbers, keys);
+            let begins = _mm256_andnot_si256(_mm256_set1_epi32(15), keys);
+            let low = _mm256_unpacklo_epi32(numbers, begins);
+            let high = _mm256_unpackhi_epi32(numbers, begins);
+            let row: *mut __m256i = row.as_mut_ptr().cast();
+            _mm256_storeu_si256(row, _mm256_permute2x128_si256::<0x20>(low, high));
+            _mm256_storeu_si256(row.add(1), _mm256_permute2x128_si256::<0x31>(low, high));
+            chosen.count_ones() as usize
+        }
+    }
+
     #[inline(always)]
     fn head(x: Self::Sixteen) -> Self::Eight {
         x[0]
@@ -156,5 +186,95 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn turn(columns: &[Vec4; 3], v: Vec4) -> Vec4 {
         turn(columns, v)
+    }
+}
+
+/// Orders that exchange each with the one next to it, and with the one two away.
+const NEXT: i32 = 0xb1;
+const NEXT_BUT_ONE: i32 = 0x4e;
+
+/// The greatest first, by a bitonic sort.
+#[inline(always)]
+fn sort_eight(all: __m256i) -> __m256i {
+    unsafe {
+        let all = order::<{ lesser(2, 1) }>(all, _mm256_shuffle_epi32::<NEXT>(all));
+        let all = order::<{ lesser(4, 2) }>(all, _mm256_shuffle_epi32::<NEXT_BUT_ONE>(all));
+        let all = order::<{ lesser(4, 1) }>(all, _mm256_shuffle_epi32::<NEXT>(all));
+        let all = order::<{ lesser(8, 4) }>(all, _mm256_permute2x128_si256::<1>(all, all));
+        let all = order::<{ lesser(8, 2) }>(all, _mm256_shuffle_epi32::<NEXT_BUT_ONE>(all));
+        order::<{ lesser(8, 1) }>(all, _mm256_shuffle_epi32::<NEXT>(all))
+    }
+}
+
+/// Of each pair the lesser where there is a bit, the greater elsewhere.
+#[inline(always)]
+fn order<const LESSER: i32>(all: __m256i, others: __m256i) -> __m256i {
+    unsafe {
+        let (less, more) = (_mm256_min_epu32(all, others), _mm256_max_epu32(all, others));
+        _mm256_blend_epi32::<LESSER>(more, less)
+    }
+}
+
+/// Who gets the lesser of both in a step of a bitonic sort, a bit each.
+///
+/// * `block`, `far`: size of the blocks that go up and down by turns, and how far apart the two of a pair are.
+pub(super) const fn lesser(block: usize, far: usize) -> i32 {
+    let mut all = 0;
+    let mut k = 0;
+    while k < 8 {
+        all |= (((k & block == 0) != (k & far == 0)) as i32) << k;
+        k += 1;
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Plain, Task, has_avx2, on_avx2};
+    use super::*;
+    use crate::sampling::Rng;
+
+    /// A row of eight.
+    struct Row<'a>(u32, &'a [f32; 8], &'a Eight);
+
+    impl Task for Row<'_> {
+        type Output = Vec<(f32, usize)>;
+
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let mut row = [Aside::NONE; 8];
+            let count = L::row(self.0, self.1, self.2, &mut row);
+            let row = row[..count].iter();
+            row.map(|a| (a.distance(), a.number())).collect()
+        }
+    }
+
+    #[test]
+    fn eight_children_are_in_order_whatever_their_number() {
+        if !has_avx2() {
+            println!("not on this processor");
+            return;
+        }
+        let mut rng = Rng::new(4, 0);
+        for i in 0..3_000 {
+            let chosen = [rng.bits() & rng.bits(), rng.bits()][i % 2] & 0xff;
+            // Different by more than is rounded, and some of them zero.
+            let scale = (rng.bits() % 8) as f32;
+            let begins = std::array::from_fn(|k| scale * (k as f32 * 37.0 % 8.0));
+            let children = Eight {
+                first: [rng.bits() % 1000, 1000 + rng.bits() % 1000],
+                split: rng.bits() % 9,
+            };
+            let mut plain = Row(chosen, &begins, &children).run::<Plain>();
+            let mut quick = on_avx2(Row(chosen, &begins, &children)).unwrap();
+            assert_eq!(plain.len(), chosen.count_ones() as usize);
+            assert!(plain.iter().zip(&quick).all(|(p, q)| {
+                (0.0..=1e-5 * p.0).contains(&(p.0 - q.0)) && (scale == 0.0 || p.1 == q.1)
+            }));
+            // As far away as each other: in any order.
+            plain.sort_by_key(|p| p.1);
+            quick.sort_by_key(|q| q.1);
+            assert!(plain.iter().zip(&quick).all(|(p, q)| p.1 == q.1));
+        }
     }
 }

@@ -6,8 +6,8 @@
               arrays as long as what is read or written"
 )]
 
-use super::avx2::{Avx2, numbers, turn};
-use super::{Aside, CHILDREN, Children, Lanes, Numbers, Way, line_up};
+use super::avx2::{Avx2, lesser, numbers, turn};
+use super::{Aside, CHILDREN, Children, Eight, Lanes, Numbers, Way, line_up};
 use glam::Vec4;
 use std::arch::x86_64::*;
 
@@ -55,6 +55,11 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn facing(least: &[[u8; 4]; 8], most: &[[u8; 4]; 8], way: &Way) -> [u32; 2] {
         Avx2::facing(least, most, way)
+    }
+
+    #[inline(always)]
+    fn row(chosen: u32, begins: &[f32; 8], children: &Eight, row: &mut [Aside; 8]) -> usize {
+        Avx2::row(chosen, begins, children, row)
     }
 
     #[inline(always)]
@@ -165,7 +170,7 @@ fn order_four<const BLOCK: usize, const FAR: usize>(all: __m256i) -> __m256i {
     unsafe {
         let others = _mm256_permutexvar_epi64(_mm256_loadu_si256(partners.as_ptr().cast()), all);
         let more = _mm256_max_epu64(all, others);
-        _mm256_mask_min_epu64(more, const { lesser(BLOCK, FAR) }, all, others)
+        _mm256_mask_min_epu64(more, const { lesser(BLOCK, FAR) as u8 }, all, others)
     }
 }
 
@@ -176,7 +181,7 @@ fn order_eight<const BLOCK: usize, const FAR: usize>(all: __m512i) -> __m512i {
     unsafe {
         let others = _mm512_permutexvar_epi64(_mm512_loadu_si512(partners.as_ptr().cast()), all);
         let more = _mm512_max_epu64(all, others);
-        _mm512_mask_min_epu64(more, const { lesser(BLOCK, FAR) }, all, others)
+        _mm512_mask_min_epu64(more, const { lesser(BLOCK, FAR) as u8 }, all, others)
     }
 }
 
@@ -186,17 +191,6 @@ const fn partners<const N: usize>(far: usize) -> [u64; N] {
     let mut k = 0;
     while k < N {
         all[k] = (k ^ far) as u64;
-        k += 1;
-    }
-    all
-}
-
-/// Who gets the lesser of both, a bit each.
-const fn lesser(block: usize, far: usize) -> u8 {
-    let mut all = 0;
-    let mut k = 0;
-    while k < 8 {
-        all |= (((k & block == 0) != (k & far == 0)) as u8) << k;
         k += 1;
     }
     all

@@ -2,10 +2,12 @@
 //! layer, each outward one less, and what has a layer or more is inside. A surface wound inward within
 //! another takes a layer away: an island.
 
-use super::shear::{Meeting, Shear};
+use super::shear::Meeting;
 use super::solid::Bound;
 use super::tree::{Candidate, Kind};
-use super::{Found, Stretch, Triangles};
+use super::way::{Stretch, Way};
+use super::{Found, Triangles};
+use crate::fiber::trace::Ray;
 use crate::fiber::{Part, Region};
 use glam::DVec3;
 
@@ -25,24 +27,16 @@ impl Triangles {
     /// Where a ray in some layers of voids, or of a medium, has left all of them, or meets what lies
     /// within them.
     ///
-    /// * `from`: the surface that it starts on.
-    pub(super) fn last_of_layers(
-        &self,
-        origin: DVec3,
-        dir: DVec3,
-        region: Region,
-        from: Option<(u32, Part)>,
-    ) -> Option<Found<'_>> {
-        let bound = match region {
-            Region::Medulla => Bound::Medulla,
-            _ => Bound::Void,
+    /// * `origin`: that of the ray, in radii.
+    pub(super) fn last_of_layers(&self, origin: DVec3, ray: &Ray) -> Option<Found<'_>> {
+        let (region, dir) = (ray.region, ray.dir);
+        let (bound, part) = match region {
+            Region::Medulla => (Bound::Medulla, Part::Medulla),
+            _ => (Bound::Void, Part::Void),
         };
+        let (from, on) = ray.triangle().unzip();
         // The boundary of a union has one layer on its inner side; elsewhere they are counted.
-        let on_it = from.is_some_and(|(_, part)| match bound {
-            Bound::Medulla => part == Part::Medulla,
-            _ => part == Part::Void,
-        });
-        let from = from.map(|(source, _)| source);
+        let on_it = on == Some(part);
         let mut layers = if on_it {
             1
         } else {
@@ -50,15 +44,16 @@ impl Triangles {
         };
         let kind = Kind::layers(bound);
         let mut some: Vec<Crossing<'_>> = Vec::new();
-        self.each_tile(origin, dir, from, |stretch, from| {
-            let shear = Shear::new(stretch.origin, stretch.dir);
+        Way::new(self.screw, origin, dir)?.find_map(|stretch| {
+            let from = from.filter(|_| stretch.is_first);
+            let (shear, length) = (&stretch.ray, stretch.length());
             let mut last: Option<Crossing<'_>> = None;
             let mut after = 0.0;
             loop {
                 // All crossings up to the next outward one: as a rule there is none before it.
                 some.clear();
-                let mut end = stretch.length;
-                self.tree.visit(&shear, end, kind, |triangle| {
+                let mut end = length;
+                self.tree.visit(shear, end, kind, |triangle| {
                     let Meeting { t, enters } = shear.meet(&triangle.corners())?;
                     let label = triangle.label();
                     let counts = label.bound == bound || (enters && label.sides[0] == region);
@@ -97,7 +92,7 @@ impl Triangles {
                         return Some(found);
                     }
                 }
-                if end >= stretch.length {
+                if end >= length {
                     return None;
                 }
                 after = end;
@@ -108,13 +103,12 @@ impl Triangles {
     /// How many layers of a kind a point has, by all that a ray from it crosses.
     fn layers(&self, origin: DVec3, dir: DVec3, bound: Bound) -> i32 {
         let mut layers = 0;
-        self.each_tile(origin, dir, None, |stretch, _| {
+        for stretch in self.stretches(origin, dir) {
             let of = |t: Candidate<'_>| t.label().bound == bound;
-            for c in self.crossings(stretch, &of) {
+            for c in self.crossings(&stretch, &of) {
                 layers += if c.enters { -1 } else { 1 };
             }
-            None::<()>
-        });
+        }
         layers
     }
 
@@ -124,16 +118,15 @@ impl Triangles {
         let dir = DVec3::new(cos, sin, 0.0);
         let mut layers = [0; Bound::ALL.len()];
         let mut inside = [Region::Outside; Bound::ALL.len()];
-        self.each_tile(point, dir, None, |stretch, _| {
+        for stretch in self.stretches(point, dir) {
             let of = |t: Candidate<'_>| which(t.label().bound);
-            for c in self.crossings(stretch, &of) {
+            for c in self.crossings(&stretch, &of) {
                 let label = c.triangle.label();
                 let bound = label.bound as usize;
                 layers[bound] += if c.enters { -1 } else { 1 };
                 inside[bound] = label.sides[1];
             }
-            None::<()>
-        });
+        }
         let innermost = (0..layers.len()).rev().find(|&bound| layers[bound] > 0);
         innermost.map_or(Region::Outside, |bound| inside[bound])
     }
@@ -143,14 +136,17 @@ impl Triangles {
         let (sin, cos) = 1.234_567_f64.sin_cos();
         let dir = DVec3::new(cos, sin, 0.0);
         let mut layers = 0;
-        self.each_tile(point, dir, None, |stretch, _| {
+        for stretch in self.stretches(point, dir) {
             let of = |t: Candidate<'_>| t.label().bound == bound && self.shells[t.place()] != shell;
-            for c in self.crossings(stretch, &of) {
+            for c in self.crossings(&stretch, &of) {
                 layers += if c.enters { -1 } else { 1 };
             }
-            None::<()>
-        });
+        }
         layers
+    }
+
+    fn stretches(&self, origin: DVec3, dir: DVec3) -> impl Iterator<Item = Stretch> {
+        Way::new(self.screw, origin, dir).into_iter().flatten()
     }
 
     /// All crossings in a tile that are to be counted, in order.
@@ -159,15 +155,9 @@ impl Triangles {
         stretch: &Stretch,
         counts: &dyn Fn(Candidate<'_>) -> bool,
     ) -> Vec<Crossing<'_>> {
-        let &Stretch {
-            origin,
-            dir,
-            length,
-            ..
-        } = stretch;
-        let shear = Shear::new(origin, dir);
+        let (shear, length) = (&stretch.ray, stretch.length());
         let mut all: Vec<Crossing<'_>> = Vec::new();
-        (self.tree).visit(&shear, length, Kind::ALL, |triangle| {
+        (self.tree).visit(shear, length, Kind::ALL, |triangle| {
             let Meeting { t, enters } = shear.meet(&triangle.corners())?;
             if t >= 0.0 && t < length && counts(triangle) {
                 all.push(Crossing {

@@ -13,6 +13,7 @@
 
 mod error;
 mod layers;
+mod nearest;
 mod overlap;
 mod seam;
 mod shear;
@@ -22,17 +23,21 @@ mod tests;
 mod tile;
 mod topology;
 mod tree;
+mod turns;
 mod twist;
+mod way;
 
 pub use error::{MeshError, Places};
+pub(crate) use turns::{SEARCHES, Turns};
 use twist::Screw;
 pub(super) use twist::{turned, twisted};
 
+use super::trace::Ray;
 use super::{Element, Hit, HitState, MeshPart, Region};
 use crate::species::FiberMesh;
-use glam::{DVec2, DVec3};
-use shear::{Meeting, Shear};
-use tree::{Candidate, Kind, Tree};
+use glam::DVec3;
+use nearest::Quest;
+use tree::{Candidate, Tree};
 
 /// How far the search goes beyond a tile, in radii. Tiles hold twice as much.
 const OVERLAP: f64 = 1e-3;
@@ -72,15 +77,6 @@ pub(super) enum Maker {
     },
 }
 
-/// What of a ray a region's surfaces are.
-struct Search {
-    shear: Shear,
-    /// Where it runs.
-    region: Region,
-    /// The surface that the ray starts on.
-    from: Option<u32>,
-}
-
 /// A triangle that a ray meets.
 #[derive(Clone, Copy, Debug)]
 struct Found<'a> {
@@ -88,19 +84,6 @@ struct Found<'a> {
     t: f64,
     triangle: Candidate<'a>,
     enters: bool,
-    /// Periods between its tile and the mesh.
-    image: f64,
-}
-
-/// The part of a ray in one tile, in the place of the mesh.
-#[derive(Clone, Copy, Debug)]
-struct Stretch {
-    origin: DVec3,
-    dir: DVec3,
-    /// Way of the ray before it, to the end of the tile, and a little beyond, in radii.
-    before: f64,
-    length: f64,
-    beyond: f64,
     /// Periods between its tile and the mesh.
     image: f64,
 }
@@ -132,22 +115,27 @@ impl Triangles {
     }
 
     /// The next boundary of a ray, as [`super::Fiber::next_hit`].
-    pub(super) fn next_hit(
-        &self,
-        origin: DVec3,
-        dir: DVec3,
-        region: Region,
-        from: Option<HitState>,
+    pub(super) fn next_hit(&self, ray: &Ray) -> Option<Hit> {
+        self.hit(ray, |quest| {
+            self.first(ray.origin / self.radius_um, ray.dir, quest)
+        })
+    }
+
+    /// The next boundary of a ray.
+    ///
+    /// * `first`: finds the first of what the ray is to meet.
+    fn hit<'a>(
+        &'a self,
+        ray: &Ray,
+        first: impl FnOnce(&Quest) -> Option<Found<'a>>,
     ) -> Option<Hit> {
-        let from = match from.map(|f| f.element) {
-            Some(Element::Triangle { source, part }) => Some((source, part)),
-            _ => None,
-        };
-        let origin = origin / self.radius_um;
-        let found = if self.layered && matches!(region, Region::Void | Region::Medulla) {
-            self.last_of_layers(origin, dir, region, from)?
-        } else {
-            self.first(origin, dir, from.map(|(source, _)| source), region)?
+        let counted = || self.last_of_layers(ray.origin / self.radius_um, ray);
+        let found = match Quest::new(self.layered, ray) {
+            Some(quest) => match first(&quest)? {
+                found if quest.is_met_by(&found) => found,
+                _ => counted()?,
+            },
+            None => counted()?,
         };
         let Found {
             t,
@@ -176,129 +164,4 @@ impl Triangles {
             },
         })
     }
-
-    /// The first triangle that bounds a region, met from within it.
-    fn first(
-        &self,
-        origin: DVec3,
-        dir: DVec3,
-        from: Option<u32>,
-        region: Region,
-    ) -> Option<Found<'_>> {
-        self.each_tile(origin, dir, from, |stretch, from| {
-            let Stretch { origin, dir, .. } = *stretch;
-            let search = Search {
-                shear: Shear::new(origin, dir),
-                region,
-                from,
-            };
-            let (t, triangle, enters) = self.first_in_tile(stretch.beyond, &search)?;
-            Some(Found {
-                t: stretch.before + t,
-                triangle,
-                enters,
-                image: stretch.image,
-            })
-        })
-    }
-
-    /// Goes along a ray from tile to tile until `visit` has found something or the ray has left the
-    /// cylinder about the mesh.
-    fn each_tile<T>(
-        &self,
-        origin: DVec3,
-        dir: DVec3,
-        from: Option<u32>,
-        mut visit: impl FnMut(&Stretch, Option<u32>) -> Option<T>,
-    ) -> Option<T> {
-        let period = self.screw.period;
-        // A ray that starts within the cylinder about the mesh meets nothing behind that: where it leaves it, is asked
-        // for when the first tile has nothing.
-        let (mut before, mut end) = match is_within_cylinder(origin) {
-            true => (0.0, None),
-            false => {
-                let (begin, end) = within_cylinder(origin, dir)?;
-                (begin.max(0.0), Some(end))
-            }
-        };
-        if end.is_some_and(|end| before >= end) {
-            return None;
-        }
-        // Where it starts decides the tile; beyond that only the direction does.
-        let start = origin + before * dir;
-        let mut image = (start.z / period).floor();
-        for _ in 0..MOST_TILES {
-            let mut local = origin + before * dir;
-            local.z -= image * period;
-            let way = |to: f64| match dir.z {
-                dz if dz > 0.0 => (period + to - local.z) / dz,
-                dz if dz < 0.0 => (-to - local.z) / dz,
-                _ => f64::INFINITY,
-            };
-            let most = end.map_or(f64::INFINITY, |end| end - before);
-            let stretch = Stretch {
-                origin: self.screw.turn(local, -image),
-                dir: self.screw.turn(dir, -image),
-                before,
-                length: way(0.0).max(0.0).min(most),
-                beyond: way(OVERLAP).min(most),
-                image,
-            };
-            let found = visit(&stretch, from.filter(|_| before <= 0.5 * period));
-            if found.is_some() {
-                return found;
-            }
-            before += way(0.0).max(0.0);
-            let leaves = || within_cylinder(origin, dir).map_or(0.0, |(_, end)| end);
-            if before >= *end.get_or_insert_with(leaves) {
-                return None;
-            }
-            image += dir.z.signum();
-        }
-        None
-    }
-
-    fn first_in_tile(&self, limit: f64, search: &Search) -> Option<(f64, Candidate<'_>, bool)> {
-        let mut best: Option<(f64, Candidate<'_>, bool)> = None;
-        let kind = Kind::around(search.region);
-        // The tree sees single precision; what is nearest is decided here.
-        self.tree.visit(&search.shear, limit, kind, |triangle| {
-            let Meeting { t, enters } = search.shear.meet(&triangle.corners())?;
-            if !(t >= 0.0 && t <= limit && triangle.is_of(kind, enters)) {
-                return None;
-            }
-            // Labels come last: they are read where something is met.
-            let source = triangle.label().source;
-            let is_nearer =
-                best.is_none_or(|(b, other, _)| t < b || (t == b && source < other.label().source));
-            if !is_nearer || search.from == Some(source) {
-                return None;
-            }
-            best = Some((t, triangle, enters));
-            Some(t)
-        });
-        best
-    }
-}
-
-/// Square of the radius of a cylinder a little wider than the mesh.
-const CYLINDER: f64 = 1.0 + 1e-5;
-
-fn is_within_cylinder(point: DVec3) -> bool {
-    point.truncate().length_squared() - CYLINDER < 0.0
-}
-
-/// Where a ray is within the cylinder about the mesh.
-fn within_cylinder(origin: DVec3, dir: DVec3) -> Option<(f64, f64)> {
-    let (o, d): (DVec2, DVec2) = (origin.truncate(), dir.truncate());
-    let (a, b, c) = (d.length_squared(), o.dot(d), o.length_squared() - CYLINDER);
-    if a < 1e-30 {
-        return (c < 0.0).then_some((0.0, f64::INFINITY));
-    }
-    let discriminant = b * b - a * c;
-    if discriminant <= 0.0 {
-        return None;
-    }
-    let root = discriminant.sqrt();
-    Some(((-b - root) / a, (-b + root) / a))
 }

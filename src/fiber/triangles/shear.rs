@@ -5,6 +5,7 @@
 use glam::DVec3;
 
 /// A ray made an axis.
+#[derive(Clone, Debug)]
 pub(super) struct Shear {
     pub(super) origin: DVec3,
     pub(super) dir: DVec3,
@@ -23,6 +24,7 @@ pub(super) struct Meeting {
 }
 
 impl Shear {
+    #[inline(always)]
     pub(super) fn new(origin: DVec3, dir: DVec3) -> Self {
         let a = dir.abs();
         // Directions are random: no branch would be guessed.

@@ -9,10 +9,12 @@ mod ray;
 mod search;
 #[cfg(test)]
 mod tests;
+mod walk;
 
 use super::OVERLAP;
 use super::shear::Shear;
 use super::solid::Bound;
+use crate::accel::lanes::Eight;
 use crate::accel::{AccelError, Effort, binary_tree};
 use crate::fiber::{Part, Region};
 use crate::pages::Table;
@@ -20,12 +22,13 @@ use glam::{DVec3, Vec3};
 use leaf::{Leaf, SIZE, Steps};
 use node::{Grid, Node};
 use search::Query;
+pub(super) use walk::Walk;
 
 /// Room for single precision, relative to the longest way of a ray: half a rounding for each of up to
 /// 32 operations in a row.
 const ROUNDINGS: f32 = 16.0 * f32::EPSILON;
 /// Marks children that are leaves.
-const LEAF: u32 = 1 << 31;
+const LEAF: u32 = Eight::SECOND;
 
 /// Number of kinds of triangles that can be asked for.
 const KINDS: usize = Region::COUNT + 3;
@@ -200,14 +203,11 @@ impl Tree {
         kind: Kind,
         test: impl FnMut(Candidate<'a>) -> Option<f64>,
     ) {
-        if self.nodes.is_empty() {
-            return;
-        }
         let query = Query {
             tree: self,
             ray,
             limit,
-            kind: kind.0,
+            kind,
         };
         query.answer(test);
     }

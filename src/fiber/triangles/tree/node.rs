@@ -1,8 +1,8 @@
 //! Eight boxes.
 
+use super::KINDS;
 use super::ray::Line;
-use super::{KINDS, LEAF};
-use crate::accel::lanes::{Lanes, Numbers};
+use crate::accel::lanes::{Eight, Lanes, Numbers};
 use glam::{DVec3, Vec3};
 
 /// Children of a node at most.
@@ -18,11 +18,9 @@ pub(super) struct Node {
     normals: [[[u8; 4]; CHILDREN]; 2],
     /// For each kind the children that hold some if entered, and if left, a bit each.
     holds: [[u8; 2]; KINDS],
-    /// First inner child and first leaf, less the number of inner children; both kinds follow one another.
-    first: [u32; 2],
+    /// Inner children and leaves.
+    pub(super) children: Eight,
     count: u8,
-    /// Inner children.
-    inner: u8,
 }
 
 const _: () = assert!(size_of::<Node>() == 192);
@@ -79,9 +77,11 @@ impl Node {
         planes: [[[u16::MAX; CHILDREN], [0; CHILDREN]]; 3],
         normals: [[ANY[0]; CHILDREN], [ANY[1]; CHILDREN]],
         holds: [[0; 2]; KINDS],
-        first: [0; 2],
+        children: Eight {
+            first: [0; 2],
+            split: 0,
+        },
         count: 0,
-        inner: 0,
     };
 
     /// One whose children hold all kinds.
@@ -91,9 +91,11 @@ impl Node {
     pub(super) fn new(grid: &Grid, boxes: &[(Vec3, Vec3)], inner: usize, first: [u32; 2]) -> Self {
         let mut node = Self {
             holds: [[((1u32 << boxes.len()) - 1) as u8; 2]; KINDS],
-            first: [first[0], first[1].wrapping_sub(inner as u32)],
+            children: Eight {
+                first: [first[0], first[1].wrapping_sub(inner as u32)],
+                split: inner as u32,
+            },
             count: boxes.len() as u8,
-            inner: inner as u8,
             ..Self::EMPTY
         };
         for (k, corners) in boxes.iter().enumerate() {
@@ -137,13 +139,10 @@ impl Node {
         self.count.into()
     }
 
-    /// Number of a child, and [`LEAF`] if it is a leaf.
+    /// Number of a child, and [`LEAF`](super::LEAF) if it is a leaf.
     #[inline(always)]
     pub(super) fn child(&self, k: u32) -> u32 {
-        match k < u32::from(self.inner) {
-            true => self.first[0].wrapping_add(k),
-            false => self.first[1].wrapping_add(k) | LEAF,
-        }
+        self.children.number(k)
     }
 
     /// Which of the boxes that hold something of a kind, seen from the side that is asked for, a ray meets, a bit each, and
