@@ -28,6 +28,7 @@ pub use outlook::{Look, Outlook, Sight};
 pub use ribbon::Segment;
 pub use strands::{Departure, Leaving, StrandHit, Strands};
 pub use surface::{Surface, SurfaceHit};
+pub use tree::Found;
 
 use crate::blame::Blame;
 use crate::bsdf::HairMaterial;
@@ -206,9 +207,9 @@ impl Scene {
         // in front.
         let mut limit = f32::INFINITY;
         let mut found = None;
-        if let Some(hit) = self.strands.closest(ray, limit, leaving) {
-            limit = hit.t;
-            found = Some(Hit::Strand(hit));
+        let strand = self.strands.nearest(ray, limit, leaving);
+        if let Some(found) = &strand {
+            limit = found.t;
         }
         let nearer = limit.next_down();
         if let Some(hit) = self.surface.as_ref().and_then(|s| s.closest(ray, nearer)) {
@@ -218,7 +219,7 @@ impl Scene {
         if let Some(t) = self.ground.as_ref().and_then(|g| g.hit(ray, limit)) {
             found = Some(Hit::Ground(t));
         }
-        found
+        found.or_else(|| Some(Hit::Strand(self.strands.describe(&strand?, ray))))
     }
 
     /// Whether anything is in front of a ray nearer than `far`, which is infinite for the environment.

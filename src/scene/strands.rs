@@ -298,14 +298,22 @@ impl Strands {
         self.strands[strand as usize].root_uv
     }
 
-    /// The nearest strand in front of `limit`.
+    /// The nearest strand in front of `limit`, with what shading has to know of it.
     ///
     /// * `leaving`: the strand the ray starts on, if any.
     pub fn closest(&self, ray: &Ray, limit: f32, leaving: Option<Leaving>) -> Option<StrandHit> {
-        // What is said of the run is on its way while the search goes on.
-        let fetch = |run| self.courses.fetch(run as usize);
-        let found = self.tree.closest(ray, limit, leaving.map(|l| l.0), fetch)?;
+        let found = self.nearest(ray, limit, leaving)?;
         Some(self.describe(&found, ray))
+    }
+
+    /// Where the nearest strand in front of `limit` is met.
+    ///
+    /// * `leaving`: the strand the ray starts on, if any.
+    pub fn nearest(&self, ray: &Ray, limit: f32, leaving: Option<Leaving>) -> Option<Found> {
+        let found = self.tree.closest(ray, limit, leaving.map(|l| l.0))?;
+        // Whoever asks next how it lies there has it sooner.
+        self.courses.fetch(found.run as usize);
+        Some(found)
     }
 
     /// Whether any strand lies in front of `limit`.
@@ -313,7 +321,8 @@ impl Strands {
         self.tree.any(ray, limit, leaving.map(|l| l.0))
     }
 
-    fn describe(&self, found: &Found, ray: &Ray) -> StrandHit {
+    /// What shading has to know of where a ray met a strand.
+    pub fn describe(&self, found: &Found, ray: &Ray) -> StrandHit {
         let course = &self.courses[found.run as usize];
         let segment = self.tree.segment(found);
         let along = segment.nearest(ray.origin, ray.dir);

@@ -43,8 +43,9 @@ pub(super) struct Ignored {
 
 /// A segment met by a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Found {
-    pub(super) t: f32,
+pub struct Found {
+    /// Distance along the ray, millimeters.
+    pub t: f32,
     pub(super) run: u32,
     /// First or second segment of the run.
     pub(super) half: u32,
@@ -120,21 +121,13 @@ impl Tree {
     }
 
     /// The nearest segment up to `limit`; of equal distances the first segment.
-    ///
-    /// * `met`: told of every run that was the nearest when it was met.
-    pub(super) fn closest(
-        &self,
-        ray: &Ray,
-        limit: f32,
-        ignored: Option<Ignored>,
-        met: impl Fn(u32),
-    ) -> Option<Found> {
-        search::search::<false>(self, ray, limit, ignored, met)
+    pub(super) fn closest(&self, ray: &Ray, limit: f32, ignored: Option<Ignored>) -> Option<Found> {
+        search::search::<false>(self, ray, limit, ignored)
     }
 
     /// Whether any segment is met up to `limit`.
     pub(super) fn any(&self, ray: &Ray, limit: f32, ignored: Option<Ignored>) -> bool {
-        search::search::<true>(self, ray, limit, ignored, |_| ()).is_some()
+        search::search::<true>(self, ray, limit, ignored).is_some()
     }
 }
 

@@ -38,15 +38,12 @@ thread_local! {
 }
 
 /// The nearest segment that a ray meets up to `limit`, of equal distances the first one, or, with `ANY`, some segment.
-///
-/// * `met`: told of every run that was the nearest when it was met.
 #[inline(always)]
 pub(super) fn search<const ANY: bool>(
     tree: &Tree,
     ray: &Ray,
     limit: f32,
     ignored: Option<Ignored>,
-    met: impl Fn(u32),
 ) -> Option<Found> {
     if tree.nodes.is_empty() {
         return None;
@@ -56,21 +53,19 @@ pub(super) fn search<const ANY: bool>(
         ray,
         limit,
         ignored: ignored.unwrap_or(Ignored::NOTHING),
-        met,
     };
     ROOM.with_borrow_mut(|room| query.on_this_processor::<ANY>(room))
 }
 
 /// What a search is asked.
-struct Query<'a, F> {
+struct Query<'a> {
     tree: &'a Tree,
     ray: &'a Ray,
     limit: f32,
     ignored: Ignored,
-    met: F,
 }
 
-impl<F: Fn(u32)> Query<'_, F> {
+impl Query<'_> {
     #[inline(always)]
     fn on_this_processor<const ANY: bool>(&self, room: &mut Room) -> Option<Found> {
         #[cfg(target_arch = "x86_64")]
@@ -190,9 +185,6 @@ impl<F: Fn(u32)> Query<'_, F> {
                     return true;
                 }
                 nearest.reach = line.along(nearest.limit);
-                if let Some(found) = &nearest.found {
-                    (self.met)(found.run);
-                }
             }
         }
         false
@@ -286,7 +278,6 @@ pub(super) fn on_each_processor(
         ray,
         limit,
         ignored: ignored.unwrap_or(Ignored::NOTHING),
-        met: |_| (),
     };
     ROOM.with_borrow_mut(|room| {
         let mut all = vec![

@@ -184,7 +184,7 @@ fn every_ray_meets_to_the_bit_what_a_test_of_all_leaves_finds() {
                 };
                 let want = every(&tree, &ray, limit, &ignored.unwrap_or(plain));
                 assert_eq!(
-                    tree.closest(&ray, limit, ignored, |_| ()),
+                    tree.closest(&ray, limit, ignored),
                     want,
                     "{name}, ray {i}: {ray:?}"
                 );
@@ -199,7 +199,7 @@ fn every_ray_meets_to_the_bit_what_a_test_of_all_leaves_finds() {
                 if let Some(found) = want {
                     hits += 1;
                     // The limit itself is within.
-                    assert_eq!(tree.closest(&ray, found.t, ignored, |_| ()), want);
+                    assert_eq!(tree.closest(&ray, found.t, ignored), want);
                     assert!(!tree.any(&ray, found.t.next_down(), ignored));
                 }
             }
