@@ -13,7 +13,7 @@ use rayon::prelude::*;
 const BATCH: usize = 4096;
 
 /// The joints of some strands, root first.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Joints {
     /// Millimeters, half width in w.
     pub(super) joints: Vec<Vec4>,
@@ -34,7 +34,10 @@ impl Joints {
         let count = groom.strands();
         let batches: Vec<Self> = (0..count.div_ceil(BATCH))
             .into_par_iter()
-            .map(|b| cut(groom, b * BATCH..((b + 1) * BATCH).min(count)))
+            .map_init(Self::default, |room, b| {
+                cut(groom, b * BATCH..((b + 1) * BATCH).min(count), room);
+                room.clone()
+            })
             .collect();
         let total = |of: fn(&Self) -> usize| batches.iter().map(of).sum();
         // Without room for all of it from the start it would be in memory three times.
@@ -59,8 +62,12 @@ impl Joints {
     }
 }
 
-fn cut(groom: &Groom, strands: std::ops::Range<usize>) -> Joints {
-    let mut out = Joints::default();
+/// * `out`: where joints come in place of those that are there, whose room is kept.
+fn cut(groom: &Groom, strands: std::ops::Range<usize>, out: &mut Joints) {
+    out.joints.clear();
+    out.at.clear();
+    out.count.clear();
+    out.length_mm.clear();
     let (mut control, mut joints) = (Vec::new(), Vec::new());
     for strand in strands {
         control.clear();
@@ -88,7 +95,6 @@ fn cut(groom: &Groom, strands: std::ops::Range<usize>) -> Joints {
         out.count.push(joints.len() as u32);
         out.joints.extend_from_slice(&joints);
     }
-    out
 }
 
 fn check(groom: &Groom) -> Result<(), SceneError> {

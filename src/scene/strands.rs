@@ -114,8 +114,17 @@ struct Course {
 
 const AT_STEPS: f32 = 65_535.0;
 
-/// Strands of which courses are made at once; few, so that they take no memory to speak of beside the table.
-const AT_ONCE: usize = 1 << 16;
+impl Course {
+    /// * `joints`: of the strand. * `at`: position of each along it. * `first`: joint of the run.
+    fn new(place: Place, joints: &[Vec4], at: &[f32], first: usize) -> Self {
+        let joint = [0, 1, 2].map(|k| (first + k).min(joints.len() - 1));
+        Self {
+            place,
+            at: joint.map(|j| (AT_STEPS * at[j] + 0.5) as u16),
+            tangents: joint.map(|j| octahedral::encode(tangent(joints, j))),
+        }
+    }
+}
 
 /// Strands ready for tracing. Joints are numbered in the order of strands, root first, and segments by the
 /// joint they start at. Where joints are is known to the tree alone.
@@ -167,22 +176,24 @@ impl Strands {
         let tree = Tree::build(&all.joints, &runs, &copies);
         let copied: usize = copies.iter().map(|&(r, _)| segments_of(&runs, r)).sum();
         let segments = runs.iter().map(|r| usize::from(r.segments)).sum::<usize>() - copied;
-        let of_strand = |strand: usize| {
-            let joints = first_joint[strand] as usize..first_joint[strand + 1] as usize;
+        // Runs come one after another: the strand of one is that of the last or a later one.
+        let course = |last: &mut Option<usize>, run: usize| {
+            let is_before = |span: &Span| span.first_run as usize <= run;
+            let from = last.unwrap_or_else(|| spans.partition_point(is_before) - 1);
+            let later = spans[from + 1..].iter().take_while(|span| is_before(span));
+            let strand = from + later.count();
+            *last = Some(strand);
             let place = Place {
                 strand: strand as u32,
                 class: groom.class[strand],
                 coat: groom.coat.get(strand).copied().unwrap_or_default(),
             };
-            courses(place, &all.joints[joints.clone()], &all.at[joints])
+            let joints = first_joint[strand] as usize..first_joint[strand + 1] as usize;
+            let first = 2 * (run - spans[strand].first_run as usize);
+            Course::new(place, &all.joints[joints.clone()], &all.at[joints], first)
         };
-        let courses = Table::filled(runs.len(), &Course::default(), |table| {
-            for first in (0..count).step_by(AT_ONCE) {
-                let strands = first..count.min(first + AT_ONCE);
-                let some: Vec<Course> = strands.into_par_iter().flat_map_iter(of_strand).collect();
-                table.extend(some);
-            }
-        });
+        let every = (0..runs.len()).into_par_iter();
+        let courses = Table::collect(&Course::default(), every.map_init(|| None, course));
         let strand = |i: usize| Strand {
             id: groom.id.get(i).copied().unwrap_or(i as u32),
             root_uv: groom.root_uv.get(i).copied().unwrap_or_default(),
@@ -383,22 +394,6 @@ impl StrandHit {
     }
 }
 
-/// The runs of a strand.
-///
-/// * `at`: position of each joint along it.
-fn courses(place: Place, joints: &[Vec4], at: &[f32]) -> impl Iterator<Item = Course> {
-    let last = joints.len().saturating_sub(1);
-    let run = move |first: usize| {
-        let joint = [0, 1, 2].map(|k| (first + k).min(last));
-        Course {
-            place,
-            at: joint.map(|j| (AT_STEPS * at[j] + 0.5) as u16),
-            tangents: joint.map(|j| octahedral::encode(tangent(joints, j))),
-        }
-    };
-    (0..last).step_by(2).map(run)
-}
-
 /// Unit tangent at a joint: halfway between the segments that meet there.
 fn tangent(joints: &[Vec4], joint: usize) -> Vec3 {
     let chord = |i: usize| match joints.get(i..i + 2) {
@@ -428,23 +423,25 @@ fn copies(joints: &[Vec4], runs: &[Run]) -> Vec<(u32, u32)> {
     let key = |r: u32| {
         let run = runs[r as usize];
         let at = |i: u8| joints[run.joint as usize + i.min(run.segments) as usize];
-        [at(0), at(1), at(2)].map(|j| j.to_array().map(f32::to_bits))
+        let joints = [at(0), at(1), at(2)].map(|j| j.to_array().map(f32::to_bits));
+        (joints, run.segments)
     };
-    let mut hashed: Vec<(u64, u32)> = (0..runs.len() as u32)
+    // The number of a run in the lower bits and in the others some that equal runs have alike.
+    let mut hashed: Vec<u64> = (0..runs.len() as u32)
         .into_par_iter()
-        .map(|r| (hash_bits(key(r).as_flattened()), r))
+        .map(|r| hash_bits(key(r).0.as_flattened()) << 32 | u64::from(r))
         .collect();
     hashed.par_sort_unstable();
-    // Equal runs have equal hashes and the lowest comes first; two different ones with one hash
-    // are both kept.
     let mut copies = Vec::new();
-    for same in hashed.chunk_by(|a, b| a.0 == b.0) {
-        let lowest = same[0].1;
-        let others = same[1..].iter().map(|&(_, r)| r);
-        let equal = others.filter(|&r| {
-            segments_of(runs, r) == segments_of(runs, lowest) && key(r) == key(lowest)
-        });
-        copies.extend(equal.map(|r| (r, lowest)));
+    for alike in hashed.chunk_by(|a, b| a >> 32 == b >> 32) {
+        // Of runs that are not copies.
+        let mut lowest: Vec<u32> = Vec::new();
+        for run in alike.iter().map(|&h| h as u32).filter(|_| alike.len() > 1) {
+            match lowest.iter().find(|&&r| key(r) == key(run)) {
+                Some(&like) => copies.push((run, like)),
+                None => lowest.push(run),
+            }
+        }
     }
     copies.sort_unstable();
     copies

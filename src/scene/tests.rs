@@ -53,7 +53,12 @@ fn leaves_have_each_joint_once() {
 
 #[test]
 fn the_tree_finds_what_a_search_of_all_segments_finds() {
-    let strands = Strands::build(&tangle(400, 2.0)).unwrap();
+    let mut groom = tangle(400, 2.0);
+    for without_length in [0, 5, 6, 399] {
+        let points = groom.range(without_length);
+        groom.points[points].fill(Vec3::ONE);
+    }
+    let strands = Strands::build(&groom).unwrap();
     let joints: Vec<(u32, Vec4)> = strands.joints().collect();
     let first: Vec<usize> = (0..400)
         .map(|s| joints.partition_point(|j| j.0 < s))
@@ -86,8 +91,19 @@ fn the_tree_finds_what_a_search_of_all_segments_finds() {
                 // Rounded otherwise: along the ray, not in the scene.
                 assert!((hit.t - t).abs() < 1e-4, "{} for {t}", hit.t);
                 assert_eq!(strands.joint_of(&hit), j);
-                assert!((0.0..=1.0).contains(&hit.at) && hit.tip_mm >= 0.0);
-                assert!((hit.tangent.length() - 1.0).abs() < 1e-5);
+                let strand: Vec<Vec3> = (joints.iter())
+                    .filter(|joint| joint.0 == hit.strand)
+                    .map(|joint| joint.1.xyz())
+                    .collect();
+                let way = |joints: &[Vec3]| -> f32 {
+                    joints.windows(2).map(|p| p[0].distance(p[1])).sum()
+                };
+                let (before, whole) = (j - first[hit.strand as usize], way(&strand));
+                let [from, to] = [before, before + 1].map(|k| way(&strand[..=k]) / whole);
+                assert!((from - 1e-4..to + 1e-4).contains(&hit.at));
+                assert!((hit.tip_mm - (1.0 - hit.at) * whole).abs() < 1e-3);
+                let chord = (strand[before + 1] - strand[before]).normalize();
+                assert!(hit.tangent.is_normalized() && hit.tangent.dot(chord) > 0.9);
                 assert!(!strands.occluded(&ray, 0.999 * t, None));
                 hits += 1;
             }

@@ -6,6 +6,7 @@
 
 mod bounds;
 mod build;
+mod cut;
 mod leaf;
 mod line;
 mod node;

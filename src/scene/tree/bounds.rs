@@ -15,6 +15,14 @@ impl Bounds {
         hi: Vec3A::NEG_INFINITY,
     };
 
+    /// Around a point.
+    pub(super) fn at(point: Vec3A) -> Self {
+        Self {
+            lo: point,
+            hi: point,
+        }
+    }
+
     pub(super) fn with(self, other: Self) -> Self {
         Self {
             lo: self.lo.min(other.lo),
