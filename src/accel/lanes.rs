@@ -38,14 +38,14 @@ impl Children<'_> {
 /// Up to eight children of two kinds: those of the first kind come first, and the numbers of each kind follow one another.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(crate) struct Eight {
+pub(crate) struct Siblings {
     /// What is added to a child's place.
     pub(crate) first: [u32; 2],
     /// How many are of the first kind.
     pub(crate) split: u32,
 }
 
-impl Eight {
+impl Siblings {
     /// The bit of a number that says that it is of the second kind.
     pub(crate) const SECOND: u32 = 1 << 31;
 
@@ -95,16 +95,14 @@ pub(crate) trait Lanes {
     ///
     /// * `begins`: where a ray enters their boxes, not negative; may be rounded down by some parts in a million.
     #[inline(always)]
-    fn row(chosen: u32, begins: &[f32; 8], children: &Eight, row: &mut [Aside; 8]) -> usize {
+    fn row(chosen: u32, begins: &[f32; 8], children: &Siblings, row: &mut [Aside; 8]) -> usize {
         let mut count = 0;
         for k in (0..8).filter(|k| chosen >> k & 1 != 0) {
-            let other = Aside::new(begins[k as usize], children.number(k));
-            let mut at = count;
-            while at > 0 && row[at - 1] < other {
-                row[at] = row[at - 1];
-                at -= 1;
-            }
-            row[at] = other;
+            insert(
+                Aside::new(begins[k as usize], children.number(k)),
+                row,
+                count,
+            );
             count += 1;
         }
         count
@@ -200,16 +198,29 @@ fn line_up(
     while chosen != 0 {
         let k = chosen.trailing_zeros() as usize;
         chosen &= chosen - 1;
-        let other = Aside::new(begins[k], children.number(k as u32));
-        let mut at = count;
-        while at > 0 && row[at - 1] < other {
-            row[at] = row[at - 1];
-            at -= 1;
-        }
-        row[at] = other;
+        insert(Aside::new(begins[k], children.number(k as u32)), row, count);
         count += 1;
     }
     count
+}
+
+/// Puts another into a row of some, the nearest last.
+#[inline(always)]
+fn insert<const N: usize>(other: Aside, row: &mut [Aside; N], count: usize) {
+    let mut at = count;
+    while at > 0 && row[at - 1] < other {
+        row[at] = row[at - 1];
+        at -= 1;
+    }
+    row[at] = other;
+}
+
+/// Room for a row from a place on.
+#[inline(always)]
+pub(crate) fn room_for<const N: usize>(all: &mut [Aside], from: usize) -> &mut [Aside; N] {
+    all[from..]
+        .first_chunk_mut()
+        .expect("room for a row beyond the last")
 }
 
 /// Whether the processor has what [`Avx2`] needs, and BMI1, POPCNT and LZCNT.

@@ -5,6 +5,8 @@
 //! follow the same paths, so the direction that a photon comes from is the one the renderer will ask
 //! about and the texels are the directions it will sample.
 
+#[cfg(test)]
+mod alone;
 mod boundary;
 mod cache;
 mod checkpoint;

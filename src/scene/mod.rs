@@ -219,7 +219,7 @@ impl Scene {
         if let Some(t) = self.ground.as_ref().and_then(|g| g.hit(ray, limit)) {
             found = Some(Hit::Ground(t));
         }
-        found.or_else(|| Some(Hit::Strand(self.strands.describe(&strand?, ray))))
+        found.or_else(|| strand.map(|strand| Hit::Strand(self.strands.describe(&strand, ray))))
     }
 
     /// Whether anything is in front of a ray nearer than `far`, which is infinite for the environment.

@@ -433,10 +433,11 @@ fn copies(joints: &[Vec4], runs: &[Run]) -> Vec<(u32, u32)> {
         .collect();
     hashed.par_sort_unstable();
     let mut copies = Vec::new();
-    for alike in hashed.chunk_by(|a, b| a >> 32 == b >> 32) {
+    let alike = hashed.chunk_by(|a, b| a >> 32 == b >> 32);
+    for alike in alike.filter(|alike| alike.len() > 1) {
         // Of runs that are not copies.
         let mut lowest: Vec<u32> = Vec::new();
-        for run in alike.iter().map(|&h| h as u32).filter(|_| alike.len() > 1) {
+        for run in alike.iter().map(|&h| h as u32) {
             match lowest.iter().find(|&&r| key(r) == key(run)) {
                 Some(&like) => copies.push((run, like)),
                 None => lowest.push(run),

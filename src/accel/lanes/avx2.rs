@@ -6,7 +6,7 @@
               of arrays as long as what is read"
 )]
 
-use super::{Aside, CHILDREN, Eight, Lanes, Numbers, Way, both};
+use super::{Aside, CHILDREN, Lanes, Numbers, Siblings, Way, both};
 use glam::Vec4;
 use std::arch::x86_64::*;
 
@@ -128,7 +128,7 @@ impl Lanes for Avx2 {
 
     /// Sorted without a branch.
     #[inline(always)]
-    fn row(chosen: u32, begins: &[f32; 8], children: &Eight, row: &mut [Aside; 8]) -> usize {
+    fn row(chosen: u32, begins: &[f32; 8], children: &Siblings, row: &mut [Aside; 8]) -> usize {
         unsafe {
             let places = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
             let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
@@ -143,7 +143,7 @@ impl Lanes for Avx2 {
             let [first, second] = children.first;
             let first = _mm256_add_epi32(_mm256_set1_epi32(first as i32), places);
             let second = _mm256_add_epi32(_mm256_set1_epi32(second as i32), places);
-            let second = _mm256_or_si256(second, _mm256_set1_epi32(Eight::SECOND as i32));
+            let second = _mm256_or_si256(second, _mm256_set1_epi32(Siblings::SECOND as i32));
             let numbers = _mm256_blendv_epi8(second, first, is_first);
             let numbers = _mm256_permutevar8x32_epi32(numbers, keys);
             let begins = _mm256_andnot_si256(_mm256_set1_epi32(15), keys);
@@ -235,7 +235,7 @@ mod tests {
     use crate::sampling::Rng;
 
     /// A row of eight.
-    struct Row<'a>(u32, &'a [f32; 8], &'a Eight);
+    struct Row<'a>(u32, &'a [f32; 8], &'a Siblings);
 
     impl Task for Row<'_> {
         type Output = Vec<(f32, usize)>;
@@ -261,7 +261,7 @@ mod tests {
             // Different by more than is rounded, and some of them zero.
             let scale = (rng.bits() % 8) as f32;
             let begins = std::array::from_fn(|k| scale * (k as f32 * 37.0 % 8.0));
-            let children = Eight {
+            let children = Siblings {
                 first: [rng.bits() % 1000, 1000 + rng.bits() % 1000],
                 split: rng.bits() % 9,
             };

@@ -7,7 +7,7 @@
 )]
 
 use super::avx2::{Avx2, lesser, numbers, turn};
-use super::{Aside, CHILDREN, Children, Eight, Lanes, Numbers, Way, line_up};
+use super::{Aside, CHILDREN, Children, Lanes, Numbers, Siblings, Way, line_up};
 use glam::Vec4;
 use std::arch::x86_64::*;
 
@@ -58,7 +58,7 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
-    fn row(chosen: u32, begins: &[f32; 8], children: &Eight, row: &mut [Aside; 8]) -> usize {
+    fn row(chosen: u32, begins: &[f32; 8], children: &Siblings, row: &mut [Aside; 8]) -> usize {
         Avx2::row(chosen, begins, children, row)
     }
 

@@ -111,14 +111,12 @@ impl Lanes for Plain {
 
     #[inline(always)]
     fn bytes(x: &[u8; CHILDREN]) -> Self::Sixteen {
-        let four = |k: usize| Vec4::from_array(std::array::from_fn(|i| f32::from(x[k + i])));
-        [[four(0), four(4)], [four(8), four(12)]]
+        [eight(&x[..8]), eight(&x[8..])]
     }
 
     #[inline(always)]
     fn words(x: &[u16; 16]) -> Self::Sixteen {
-        let four = |k: usize| Vec4::from_array(std::array::from_fn(|i| f32::from(x[k + i])));
-        [[four(0), four(4)], [four(8), four(12)]]
+        [eight(&x[..8]), eight(&x[8..])]
     }
 
     #[inline(always)]
@@ -137,8 +135,7 @@ impl Lanes for Plain {
 
     #[inline(always)]
     fn short(x: &[u16; 8]) -> Self::Eight {
-        let four = |k: usize| Vec4::from_array(std::array::from_fn(|i| f32::from(x[k + i])));
-        [four(0), four(4)]
+        eight(x)
     }
 
     #[inline(always)]
@@ -185,4 +182,11 @@ impl Lanes for Plain {
     fn sixteen(x: Self::Sixteen) -> [f32; CHILDREN] {
         both(x.map(Self::eight))
     }
+}
+
+/// The first eight of some whole numbers.
+#[inline(always)]
+fn eight<T: Copy + Into<f32>>(x: &[T]) -> [Vec4; 2] {
+    let four = |k: usize| Vec4::from_array(std::array::from_fn(|i| x[k + i].into()));
+    [four(0), four(4)]
 }

@@ -15,6 +15,15 @@ use glam::DVec3;
 /// one: a ray through an edge meets the triangles on both sides of it.
 const SAME: f64 = 1e-12;
 
+/// Whose layers are counted in a region, if any are.
+pub(super) fn counted_in(region: Region) -> Option<(Bound, Part)> {
+    match region {
+        Region::Medulla => Some((Bound::Medulla, Part::Medulla)),
+        Region::Void => Some((Bound::Void, Part::Void)),
+        _ => None,
+    }
+}
+
 /// A crossing of a surface that is counted.
 #[derive(Clone, Copy)]
 struct Crossing<'a> {
@@ -30,10 +39,7 @@ impl Triangles {
     /// * `origin`: that of the ray, in radii.
     pub(super) fn last_of_layers(&self, origin: DVec3, ray: &Ray) -> Option<Found<'_>> {
         let (region, dir) = (ray.region, ray.dir);
-        let (bound, part) = match region {
-            Region::Medulla => (Bound::Medulla, Part::Medulla),
-            _ => (Bound::Void, Part::Void),
-        };
+        let (bound, part) = counted_in(region)?;
         let (from, on) = ray.triangle().unzip();
         // The boundary of a union has one layer on its inner side; elsewhere they are counted.
         let on_it = on == Some(part);

@@ -1,12 +1,12 @@
 //! The nearest triangle of a kind along a ray.
 
+use super::layers::counted_in;
 use super::shear::{Meeting, Shear};
 use super::solid::Bound;
 use super::tree::{Candidate, Kind};
 use super::way::{Stretch, Way};
 use super::{Found, Triangles};
 use crate::fiber::trace::Ray;
-use crate::fiber::{Part, Region};
 use glam::DVec3;
 
 /// What a ray is to meet.
@@ -37,18 +37,14 @@ impl Quest {
     #[inline(always)]
     pub(super) fn new(is_layered: bool, ray: &Ray) -> Option<Self> {
         let (from, on) = ray.triangle().unzip();
-        // The boundary of a union has one layer on its inner side.
-        let (bound, part) = match ray.region {
-            Region::Medulla if is_layered => (Bound::Medulla, Part::Medulla),
-            Region::Void if is_layered => (Bound::Void, Part::Void),
-            region => {
-                return Some(Self {
-                    kind: Kind::around(region),
-                    from,
-                    layer: None,
-                });
-            }
+        let Some((bound, part)) = counted_in(ray.region).filter(|_| is_layered) else {
+            return Some(Self {
+                kind: Kind::around(ray.region),
+                from,
+                layer: None,
+            });
         };
+        // The boundary of a union has one layer on its inner side.
         (on == Some(part)).then(|| Self {
             kind: Kind::layers(bound),
             from,

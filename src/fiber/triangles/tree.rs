@@ -14,7 +14,7 @@ mod walk;
 use super::OVERLAP;
 use super::shear::Shear;
 use super::solid::Bound;
-use crate::accel::lanes::Eight;
+use crate::accel::lanes::Siblings;
 use crate::accel::{AccelError, Effort, binary_tree};
 use crate::fiber::{Part, Region};
 use crate::pages::Table;
@@ -28,7 +28,7 @@ pub(super) use walk::Walk;
 /// 32 operations in a row.
 const ROUNDINGS: f32 = 16.0 * f32::EPSILON;
 /// Marks children that are leaves.
-const LEAF: u32 = Eight::SECOND;
+const LEAF: u32 = Siblings::SECOND;
 
 /// Number of kinds of triangles that can be asked for.
 const KINDS: usize = Region::COUNT + 3;
@@ -177,7 +177,7 @@ impl Tree {
         for index in (0..self.nodes.len()).rev() {
             let node = &self.nodes[index];
             let held = |k: usize| {
-                let child = node.child(k as u32);
+                let child = node.children.number(k as u32);
                 let number = (child & !LEAF) as usize;
                 if child & LEAF == 0 {
                     return self.nodes[number].held();

@@ -108,14 +108,7 @@ impl<'a> Tour<'a> {
         let quest = Quest::new(triangles.layered, ray)?;
         let mut way = Way::new(triangles.screw, ray.origin / triangles.radius_um, ray.dir)?;
         let stretch = way.next()?;
-        let nearest = Nearest::new(&quest, &stretch);
-        let walk = Walk::new(
-            &triangles.tree,
-            &stretch.ray,
-            nearest.limit,
-            quest.kind,
-            aside,
-        );
+        let (nearest, walk) = begin(&triangles.tree, &quest, &stretch, aside);
         Some(Self {
             quest,
             way,
@@ -129,11 +122,22 @@ impl<'a> Tour<'a> {
     #[inline(always)]
     fn next_tile(&mut self, triangles: &'a Triangles, aside: &mut [Aside]) -> Option<()> {
         self.stretch = self.way.next()?;
-        self.nearest = Nearest::new(&self.quest, &self.stretch);
-        let (limit, kind) = (self.nearest.limit, self.quest.kind);
-        self.walk = Walk::new(&triangles.tree, &self.stretch.ray, limit, kind, aside);
+        (self.nearest, self.walk) = begin(&triangles.tree, &self.quest, &self.stretch, aside);
         Some(())
     }
+}
+
+/// A search of a tile.
+#[inline(always)]
+fn begin<'a>(
+    tree: &Tree,
+    quest: &Quest,
+    stretch: &Stretch,
+    aside: &mut [Aside],
+) -> (Nearest<'a>, Walk) {
+    let nearest = Nearest::new(quest, stretch);
+    let walk = Walk::new(tree, &stretch.ray, nearest.limit, quest.kind, aside);
+    (nearest, walk)
 }
 
 /// Steps of all searches until enough have ended.

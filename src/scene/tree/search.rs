@@ -9,9 +9,11 @@ use super::leaf::{Leaf, RUNS};
 use super::line::Line;
 use super::{DEPTH, Found, Ignored, Tree};
 use crate::accel::Ray;
-use crate::accel::lanes::{Aside, CHILDREN, Lanes, Plain};
-#[cfg(target_arch = "x86_64")]
-use crate::accel::lanes::{Avx2, Avx512, has_avx2, has_avx512};
+#[cfg(test)]
+use crate::accel::lanes::Plain;
+#[cfg(all(test, target_arch = "x86_64"))]
+use crate::accel::lanes::on_avx2;
+use crate::accel::lanes::{Aside, CHILDREN, Lanes, Task, on_this_processor, room_for};
 use crate::pages::fetch;
 use std::cell::RefCell;
 
@@ -54,7 +56,12 @@ pub(super) fn search<const ANY: bool>(
         limit,
         ignored: ignored.unwrap_or(Ignored::NOTHING),
     };
-    ROOM.with_borrow_mut(|room| query.on_this_processor::<ANY>(room))
+    ROOM.with_borrow_mut(|room| {
+        on_this_processor(Search::<ANY> {
+            query: &query,
+            room,
+        })
+    })
 }
 
 /// What a search is asked.
@@ -65,35 +72,22 @@ struct Query<'a> {
     ignored: Ignored,
 }
 
-impl Query<'_> {
+/// A search from beginning to end.
+struct Search<'a, const ANY: bool> {
+    query: &'a Query<'a>,
+    room: &'a mut Room,
+}
+
+impl<const ANY: bool> Task for Search<'_, ANY> {
+    type Output = Option<Found>;
+
     #[inline(always)]
-    fn on_this_processor<const ANY: bool>(&self, room: &mut Room) -> Option<Found> {
-        #[cfg(target_arch = "x86_64")]
-        if has_avx2() {
-            #[allow(unsafe_code, reason = "measured faster; the processor was asked")]
-            // SAFETY: the processor has what the functions enable.
-            return unsafe {
-                match has_avx512() {
-                    true => self.avx512::<ANY>(room),
-                    false => self.avx2::<ANY>(room),
-                }
-            };
-        }
-        self.walk::<Plain, ANY>(room)
+    fn run<L: Lanes>(self) -> Option<Found> {
+        self.query.walk::<L, ANY>(self.room)
     }
+}
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma,bmi1,popcnt,lzcnt")]
-    fn avx2<const ANY: bool>(&self, room: &mut Room) -> Option<Found> {
-        self.walk::<Avx2, ANY>(room)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,popcnt,lzcnt")]
-    fn avx512<const ANY: bool>(&self, room: &mut Room) -> Option<Found> {
-        self.walk::<Avx512, ANY>(room)
-    }
-
+impl Query<'_> {
     #[inline(always)]
     fn walk<L: Lanes, const ANY: bool>(&self, room: &mut Room) -> Option<Found> {
         let (nodes, leaves) = (self.tree.nodes.entries(), self.tree.leaves.entries());
@@ -115,9 +109,9 @@ impl Query<'_> {
             return None;
         }
         let (chosen, children) = root.inner(met);
-        let mut count = L::line_up(chosen, begins, children, row(aside, 0));
+        let mut count = L::line_up(chosen, begins, children, room_for(aside, 0));
         let (chosen, children) = root.leaves(met);
-        let mut ripe_count = L::line_up(chosen, begins, children, row(ripe, 0));
+        let mut ripe_count = L::line_up(chosen, begins, children, room_for(ripe, 0));
         loop {
             while count > 0 && aside[count - 1].distance() > nearest.reach {
                 count -= 1;
@@ -136,13 +130,13 @@ impl Query<'_> {
             let far_met = far_met & (two as u16).wrapping_neg();
 
             let (chosen, children) = far.inner(far_met);
-            count += L::line_up(chosen, far_begins, children, row(aside, count));
+            count += L::line_up(chosen, far_begins, children, room_for(aside, count));
             let (chosen, children) = near.inner(near_met);
-            count += L::line_up(chosen, near_begins, children, row(aside, count));
+            count += L::line_up(chosen, near_begins, children, room_for(aside, count));
             let (chosen, children) = far.leaves(far_met);
-            let mut found_count = L::line_up(chosen, far_begins, children, row(found, 0));
+            let mut found_count = L::line_up(chosen, far_begins, children, room_for(found, 0));
             let (chosen, children) = near.leaves(near_met);
-            found_count += L::line_up(chosen, near_begins, children, row(found, found_count));
+            found_count += L::line_up(chosen, near_begins, children, room_for(found, found_count));
             for leaf in &found[..found_count] {
                 fetch(&leaves[leaf.number()]);
             }
@@ -257,14 +251,6 @@ impl Ignored {
     }
 }
 
-/// Room for a row from a place on.
-#[inline(always)]
-fn row<const N: usize>(all: &mut [Aside; N], from: usize) -> &mut [Aside; CHILDREN] {
-    all[from..]
-        .first_chunk_mut()
-        .expect("room for a row beyond the last")
-}
-
 /// The nearest segment with what each processor does that this one can be.
 #[cfg(test)]
 pub(super) fn on_each_processor(
@@ -280,16 +266,22 @@ pub(super) fn on_each_processor(
         ignored: ignored.unwrap_or(Ignored::NOTHING),
     };
     ROOM.with_borrow_mut(|room| {
-        let mut all = vec![
-            ("this processor", query.on_this_processor::<false>(room)),
-            ("any processor", query.walk::<Plain, false>(room)),
-        ];
+        let mut all = vec![("any processor", query.walk::<Plain, false>(room))];
+        all.push((
+            "this processor",
+            on_this_processor(Search::<false> {
+                query: &query,
+                room,
+            }),
+        ));
         #[cfg(target_arch = "x86_64")]
-        if has_avx2() {
-            #[allow(unsafe_code, reason = "the processor was asked")]
-            // SAFETY: the processor has what the function enables.
-            all.push(("AVX2", unsafe { query.avx2::<false>(room) }));
-        }
+        all.extend(
+            on_avx2(Search::<false> {
+                query: &query,
+                room,
+            })
+            .map(|found| ("AVX2", found)),
+        );
         all
     })
 }

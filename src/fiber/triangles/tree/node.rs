@@ -2,7 +2,7 @@
 
 use super::KINDS;
 use super::ray::Line;
-use crate::accel::lanes::{Eight, Lanes, Numbers};
+use crate::accel::lanes::{Lanes, Numbers, Siblings};
 use glam::{DVec3, Vec3};
 
 /// Children of a node at most.
@@ -19,7 +19,7 @@ pub(super) struct Node {
     /// For each kind the children that hold some if entered, and if left, a bit each.
     holds: [[u8; 2]; KINDS],
     /// Inner children and leaves.
-    pub(super) children: Eight,
+    pub(super) children: Siblings,
     count: u8,
 }
 
@@ -77,7 +77,7 @@ impl Node {
         planes: [[[u16::MAX; CHILDREN], [0; CHILDREN]]; 3],
         normals: [[ANY[0]; CHILDREN], [ANY[1]; CHILDREN]],
         holds: [[0; 2]; KINDS],
-        children: Eight {
+        children: Siblings {
             first: [0; 2],
             split: 0,
         },
@@ -91,7 +91,7 @@ impl Node {
     pub(super) fn new(grid: &Grid, boxes: &[(Vec3, Vec3)], inner: usize, first: [u32; 2]) -> Self {
         let mut node = Self {
             holds: [[((1u32 << boxes.len()) - 1) as u8; 2]; KINDS],
-            children: Eight {
+            children: Siblings {
                 first: [first[0], first[1].wrapping_sub(inner as u32)],
                 split: inner as u32,
             },
@@ -137,12 +137,6 @@ impl Node {
     /// How many children there are.
     pub(super) fn count(&self) -> usize {
         self.count.into()
-    }
-
-    /// Number of a child, and [`LEAF`](super::LEAF) if it is a leaf.
-    #[inline(always)]
-    pub(super) fn child(&self, k: u32) -> u32 {
-        self.children.number(k)
     }
 
     /// Which of the boxes that hold something of a kind, seen from the side that is asked for, a ray meets, a bit each, and

@@ -4,7 +4,7 @@ use super::leaf::Leaf;
 use super::node::CHILDREN;
 use super::ray::Line;
 use super::{Candidate, Kind, LEAF, SIZE, Shear, Tree};
-use crate::accel::lanes::{Aside, Lanes};
+use crate::accel::lanes::{Aside, Lanes, room_for};
 
 /// Lines of a cache that a node takes; a leaf takes one less.
 const LINES: usize = 3;
@@ -79,7 +79,7 @@ impl Walk {
     #[inline(always)]
     pub(in super::super) fn leave_node<L: Lanes>(&mut self, tree: &Tree, aside: &mut [Aside]) {
         let node = &tree.nodes[self.next as usize];
-        let row = row(aside, self.count);
+        let row = room_for(aside, self.count);
         self.count += L::row(self.met, &self.begins, &node.children, row);
         self.next_aside(aside);
     }
@@ -162,12 +162,4 @@ impl Tree {
     fn cut(&self, t: f64) -> f32 {
         t as f32 * (1.0 + 4.0 * f32::EPSILON) + self.room
     }
-}
-
-/// Room for a row from a place on.
-#[inline(always)]
-fn row(all: &mut [Aside], from: usize) -> &mut [Aside; CHILDREN] {
-    all[from..]
-        .first_chunk_mut()
-        .expect("room for a row beyond the last")
 }
