@@ -6,7 +6,7 @@ mod streaks;
 use super::medulla::{Pieces, Rim};
 use super::section::UnitRay;
 use crate::species::Structure;
-use streaks::Streaks;
+use streaks::{Shade, Streaks};
 
 /// Where the pigment lies. Its mean over the cortex is 1.
 #[derive(Clone, Debug)]
@@ -164,11 +164,6 @@ impl Pigment {
                 1.0 - p.share(ray.z + t0 * ray.dz, ray.z + t1 * ray.dz)
             })
         };
-        // Where the medulla would be the density is that beside it.
-        let density = |lean: &Lean, t: f64| {
-            let rho2 = ray.c + t * (2.0 * ray.b + t * ray.a);
-            lean.density(rho2.max(self.ratio * self.ratio).sqrt())
-        };
         match (&self.streaks, &self.lean) {
             (None, None) => (t1 - t0) * outside(t0, t1),
             (None, Some(lean)) if pieces.is_some() => {
@@ -176,7 +171,7 @@ impl Pigment {
             }
             (None, Some(lean)) => lean.integral(ray, t0, t1),
             (Some(streaks), lean) => {
-                let (mut sum, mut within) = (0.0, (t0, t1));
+                let mut within = (t0, t1);
                 if let Some(lean) = lean {
                     let Some((a, b)) = ray.inside_circle(lean.rim) else {
                         return 0.0;
@@ -184,9 +179,17 @@ impl Pigment {
                     within = (t0.max(a), t1.min(b));
                 }
                 let (t0, t1) = within;
+                // Where the medulla would be the density is that beside it.
+                let shade = Shade {
+                    lean: lean.unwrap_or(Lean::EVEN),
+                    ratio: self.ratio,
+                };
+                if pieces.is_none() {
+                    return streaks.integral(ray, t0, t1, &shade);
+                }
+                let mut sum = 0.0;
                 streaks.walk(ray, t0, t1, |streak, t0, t1| {
-                    let middle = 0.5 * (t0 + t1);
-                    let at = lean.as_ref().map_or(1.0, |lean| density(lean, middle));
+                    let at = shade.at(ray, 0.5 * (t0 + t1));
                     sum += streak * at * (t1 - t0) * outside(t0, t1);
                 });
                 sum
@@ -196,6 +199,13 @@ impl Pigment {
 }
 
 impl Lean {
+    /// The same everywhere.
+    const EVEN: Self = Self {
+        base: 1.0,
+        rise: 0.0,
+        rim: f64::INFINITY,
+    };
+
     /// `1 + b (1 - 2 u)` up to the rim, with u from 0 at the medulla to 1 at the farthest part of the mean
     /// surface, over its mean.
     fn new(b: f64, clear_rim: f64, ratio: f64, radii: &[f64]) -> Self {

@@ -1,5 +1,9 @@
 //! Pigment in streaks: cells slender along the axis, each with a density of its own.
 
+#[cfg(target_arch = "x86_64")]
+mod lanes;
+
+use super::Lean;
 use crate::fiber::section::{UnitRay, floor, smaller};
 use crate::sampling::{Rng, hash64};
 
@@ -7,6 +11,9 @@ use crate::sampling::{Rng, hash64};
 const STREAK_UM: f64 = 1.5;
 /// Mean length of a streak, micrometers; reported as dots and dashes of 10 to 40.
 const STREAK_LENGTH_UM: f64 = 25.0;
+
+/// Columns beyond the outermost ones, which these go on into: scales may stand out a little.
+const MARGIN: i32 = 2;
 
 /// Density in cells that are slender along z: a log-normal number a cell, drawn beforehand, for a ray
 /// passes dozens. Cells stand in square columns; in each they begin at a height of its own.
@@ -19,10 +26,27 @@ pub(super) struct Streaks {
     /// Cells of a column in one period, and their number per micrometer.
     count: i32,
     per_um: f64,
-    /// Where the cells of each column begin, in cells.
-    phases: Vec<f32>,
-    /// Density of each cell, column by column; their mean is 1.
-    densities: Vec<f32>,
+    /// Column by column, where its cells begin, in cells, and the density of each; the mean of these is 1.
+    columns: Vec<f32>,
+    #[cfg(target_arch = "x86_64")]
+    lanes: Option<lanes::Set>,
+}
+
+/// What the density of a streak is multiplied by.
+#[derive(Clone, Copy)]
+pub(super) struct Shade {
+    pub(super) lean: Lean,
+    /// Radius within which it is that at this radius.
+    pub(super) ratio: f64,
+}
+
+impl Shade {
+    /// At a place of a ray.
+    #[inline]
+    pub(super) fn at(&self, ray: &UnitRay, t: f64) -> f64 {
+        let rho2 = ray.c + t * (2.0 * ray.b + t * ray.a);
+        self.lean.density(rho2.max(self.ratio * self.ratio).sqrt())
+    }
 }
 
 impl Streaks {
@@ -40,12 +64,14 @@ impl Streaks {
         let scale = semi.map(|s| s / STREAK_UM);
         let half = scale.map(|s| (s * reach) as i32 + 1);
         let count = (period / STREAK_LENGTH_UM).round().max(1.0) as i32;
-        let (mut phases, mut densities) = (Vec::new(), Vec::new());
-        for y in -half[1]..half[1] {
-            for x in -half[0]..half[0] {
+        let mut columns = Vec::new();
+        for y in -half[1] - MARGIN..half[1] + MARGIN {
+            let y = y.clamp(-half[1], half[1] - 1);
+            for x in -half[0] - MARGIN..half[0] + MARGIN {
+                let x = x.clamp(-half[0], half[0] - 1);
                 let key = hash64(seed ^ i64::from(x) as u64 ^ ((i64::from(y) as u64) << 32));
-                phases.push((key >> 40) as f32 / (1u32 << 24) as f32);
-                densities.extend((0..count).map(|k| {
+                columns.push((key >> 40) as f32 / (1u32 << 24) as f32);
+                columns.extend((0..count).map(|k| {
                     let draw = hash64(key ^ i64::from(k) as u64) & 255;
                     (levels[draw as usize] / mean) as f32
                 }));
@@ -53,12 +79,34 @@ impl Streaks {
         }
         Self {
             scale,
-            size: half.map(|h| 2 * h),
+            size: half.map(|h| 2 * (h + MARGIN)),
             count,
             per_um: f64::from(count) / period,
-            phases,
-            densities,
+            columns,
+            #[cfg(target_arch = "x86_64")]
+            lanes: lanes::Set::detect(),
         }
+    }
+
+    /// The integral of the shaded density along a ray.
+    pub(super) fn integral(&self, ray: &UnitRay, t0: f64, t1: f64, shade: &Shade) -> f64 {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(sum) = self
+            .lanes
+            .and_then(|set| set.integral(self, ray, (t0, t1), shade))
+        {
+            return sum;
+        }
+        self.integral_by_walk(ray, t0, t1, shade)
+    }
+
+    /// The same on any processor.
+    fn integral_by_walk(&self, ray: &UnitRay, t0: f64, t1: f64, shade: &Shade) -> f64 {
+        let mut sum = 0.0;
+        self.walk(ray, t0, t1, |streak, t0, t1| {
+            sum += streak * shade.at(ray, 0.5 * (t0 + t1)) * (t1 - t0);
+        });
+        sum
     }
 
     /// Visits the cells along a ray: density, begin and end.
@@ -70,16 +118,14 @@ impl Streaks {
         t1: f64,
         mut visit: impl FnMut(f64, f64, f64),
     ) {
-        let rate = [ray.dx * self.scale[0], ray.dy * self.scale[1]];
-        let at = [ray.x * self.scale[0], ray.y * self.scale[1]];
-        let [mut x, mut y] = [0, 1].map(|k| Axis::new(at[k], rate[k], t0, self.size[k]));
+        let [mut x, mut y] = self.axes(ray, t0);
         let axial = Axial::new(self, ray, t0, t1);
         let mut t = t0;
         while t < t1 {
             let column = y.index() * self.size[0] + x.index();
             let end = smaller(smaller(x.next, y.next), t1);
             if end > t {
-                axial.walk(column as usize, t, end, &mut visit);
+                axial.walk(self.place(column), t, end, &mut visit);
                 t = end;
             }
             if x.next <= y.next {
@@ -88,6 +134,22 @@ impl Streaks {
                 y.advance();
             }
         }
+    }
+
+    /// A ray's ways along x and y from `t0` on.
+    #[inline]
+    fn axes(&self, ray: &UnitRay, t0: f64) -> [Axis; 2] {
+        let [a, b] = self.scale;
+        [
+            Axis::new(ray.x * a, ray.dx * a, t0, self.size[0]),
+            Axis::new(ray.y * b, ray.dy * b, t0, self.size[1]),
+        ]
+    }
+
+    /// Where a column begins.
+    #[inline]
+    fn place(&self, column: i32) -> usize {
+        (column * (self.count + 1)) as usize
     }
 }
 
@@ -120,7 +182,7 @@ impl Axis {
         }
     }
 
-    /// Scales may stand out a little over the outermost columns: there these go on.
+    /// Beyond the outermost columns these go on.
     #[inline]
     fn index(&self) -> i32 {
         self.cell.clamp(0, self.last)
@@ -155,42 +217,43 @@ impl<'a> Axial<'a> {
         }
     }
 
+    /// * `place`: where the column begins.
     #[inline]
-    fn walk(&self, column: usize, t0: f64, t1: f64, visit: &mut impl FnMut(f64, f64, f64)) {
+    fn walk(&self, place: usize, t0: f64, t1: f64, visit: &mut impl FnMut(f64, f64, f64)) {
         // Rounding may leave it a little below 0, which truncation takes for 0.
-        let z = self.z + f64::from(self.streaks.phases[column]);
+        let z = self.z + f64::from(self.streaks.columns[place]);
         let (k, last) = ((z + t0 * self.dz) as i32, (z + t1 * self.dz) as i32);
         if k == last {
-            visit(self.density(column, k), t0, t1);
+            visit(self.density(place, k), t0, t1);
         } else {
-            self.climb(column, (k, last), (t0, t1), visit);
+            self.climb(place, (k, last), (t0, t1), visit);
         }
     }
 
     /// More than one cell of a column, which is rare: columns are slender.
     fn climb(
         &self,
-        column: usize,
+        place: usize,
         (mut k, last): (i32, i32),
         (mut t, t1): (f64, f64),
         visit: &mut impl FnMut(f64, f64, f64),
     ) {
-        let z = self.z + f64::from(self.streaks.phases[column]);
+        let z = self.z + f64::from(self.streaks.columns[place]);
         while k != last {
             let (edge, next) = if last > k { (k + 1, k + 1) } else { (k, k - 1) };
             let end = ((f64::from(edge) - z) / self.dz).clamp(t, t1);
-            visit(self.density(column, k), t, end);
+            visit(self.density(place, k), t, end);
             (t, k) = (end, next);
         }
-        visit(self.density(column, k), t, t1);
+        visit(self.density(place, k), t, t1);
     }
 
     #[inline]
-    fn density(&self, column: usize, mut k: i32) -> f64 {
+    fn density(&self, place: usize, mut k: i32) -> f64 {
         let count = self.streaks.count;
         if k >= count {
             k %= count;
         }
-        f64::from(self.streaks.densities[column * count as usize + k as usize])
+        f64::from(self.streaks.columns[place + 1 + k as usize])
     }
 }

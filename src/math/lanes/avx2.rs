@@ -161,6 +161,18 @@ impl Wide for Avx2 {
     }
 
     #[inline(always)]
+    fn widen(self, singles: &[f32; LANES]) -> Self::Reals {
+        let (low, high) = singles.split_at(4);
+        // SAFETY: as above; halves are four numbers.
+        unsafe {
+            [
+                _mm256_cvtps_pd(_mm_loadu_ps(low.as_ptr())),
+                _mm256_cvtps_pd(_mm_loadu_ps(high.as_ptr())),
+            ]
+        }
+    }
+
+    #[inline(always)]
     fn read_columns(self, rows: [&Row; LANES]) -> [Self::Reals; LANES] {
         let [a, b, c, d, e, f, g, h] = rows;
         let low = [&a.0, &b.0, &c.0, &d.0];

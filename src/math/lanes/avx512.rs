@@ -117,6 +117,12 @@ impl Wide for Avx512 {
     }
 
     #[inline(always)]
+    fn widen(self, singles: &[f32; LANES]) -> __m512d {
+        // SAFETY: as above; there are eight of them.
+        unsafe { _mm512_cvtps_pd(_mm256_loadu_ps(singles.as_ptr())) }
+    }
+
+    #[inline(always)]
     fn read_columns(self, [a, b, c, d, e, f, g, h]: [&Row; LANES]) -> [__m512d; LANES] {
         self.transpose([
             self.read(a),

@@ -1,12 +1,13 @@
 //! Eight numbers side by side in AVX-512 or AVX2, each rounded as a plain number would be: the same
 //! formula gives the same bits eight at a time and one at a time.
 //!
-//! What is written with them is written once, for any [`Wide`]. All `unsafe` of the flight of photons is in the two
+//! What is written with them is written once, for any [`Wide`]. All `unsafe` of the flight of photons is in the
 //! instruction sets, here.
 
 mod avx2;
 mod avx512;
 mod fours;
+mod merge;
 mod single;
 #[cfg(test)]
 mod tests;
@@ -16,6 +17,7 @@ mod wide;
 
 pub(crate) use avx2::Avx2;
 pub(crate) use avx512::Avx512;
+pub(crate) use merge::Merge;
 pub(crate) use single::{F32x16, Singles};
 pub(crate) use vectors::Vectors;
 pub(crate) use wide::Wide;

@@ -1,6 +1,6 @@
 //! Lanes hold what plain numbers give, whatever the instruction set, for hostile numbers too.
 
-use super::{Avx2, Avx512, F64x8, LANES, Mask, Row, Singles, U64x8, Wide};
+use super::{Avx2, Avx512, F64x8, LANES, Mask, Merge, Row, Singles, U64x8, Wide};
 use crate::sampling::Rng;
 use std::array::from_fn;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -283,6 +283,12 @@ impl<W: Wide> Tests<W> {
                     let lane = plain.iter().position(|&p| p == least).unwrap_or(0);
                     assert_eq!(found.least(), (least, lane), "{plain:?}");
                 }
+                let low: [f32; LANES] = from_fn(|i| plain[i]);
+                let wide = simd.widened(&low).row().0.map(f64::to_bits);
+                let plain_wide = low.map(|x| f64::from(x).to_bits());
+                if low.iter().all(|p| !p.is_nan()) {
+                    assert_eq!(wide, plain_wide);
+                }
                 // A lane is seen when all others are infinite.
                 let lane = rng.bits() as usize % 16;
                 if plain[lane] < f32::INFINITY {
@@ -292,6 +298,26 @@ impl<W: Wide> Tests<W> {
                     assert_eq!(alone.least(), (plain[lane], lane));
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn two_rows_are_merged_in_order() {
+    let endless = f64::INFINITY;
+    let rows = [
+        ([0.0, 0.1], [0.3, 0.7]),
+        ([-2.0, 1.0], [1.0, 0.5]),
+        ([endless, 0.25], [endless, 0.1]),
+        ([4.0, endless], [0.1, endless]),
+    ];
+    for (mut next, steps) in rows {
+        let mut merge = Merge::new(next, steps);
+        for _ in 0..1000 {
+            let first = next[0] <= next[1];
+            let row = usize::from(!first);
+            assert_eq!(merge.pop(), (next[row], usize::from(first)));
+            next[row] += steps[row];
         }
     }
 }

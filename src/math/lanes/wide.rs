@@ -26,6 +26,8 @@ pub(crate) trait Wide: Copy {
     fn read_columns(self, rows: [&Row; LANES]) -> [Self::Reals; LANES];
     /// Lane `i` of result `k` is lane `k` of `rows[i]`.
     fn transpose(self, rows: [Self::Reals; LANES]) -> [Self::Reals; LANES];
+    /// The same numbers in double precision.
+    fn widen(self, singles: &[f32; LANES]) -> Self::Reals;
     /// Both numbers of entries of a table.
     ///
     /// # Panics
@@ -109,6 +111,12 @@ pub(crate) trait Wide: Copy {
     #[inline(always)]
     fn load(self, row: &Row) -> F64x8<Self> {
         F64x8(self, self.read(row))
+    }
+
+    /// The same numbers in double precision.
+    #[inline(always)]
+    fn widened(self, singles: &[f32; LANES]) -> F64x8<Self> {
+        F64x8(self, self.widen(singles))
     }
 
     /// Row `k` of the result holds number `k` of each of these: one row a lane.
