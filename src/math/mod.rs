@@ -28,3 +28,11 @@ pub(crate) fn widest<R>(f: impl FnOnce() -> R) -> R {
     }
     f()
 }
+
+/// Whether [`widest`] has registers of 512 bits.
+pub(crate) fn has_wide_registers() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return lanes::Avx512::detect().is_some();
+    #[cfg(not(target_arch = "x86_64"))]
+    false
+}

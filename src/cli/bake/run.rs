@@ -58,12 +58,16 @@ pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), 
     job.run()
 }
 
-/// About how long a table takes to be written and to be safe on a disk.
-fn writing(settings: &Settings) -> Duration {
+/// About how long it takes until a table is written, safe on a disk, and its error known, which is estimated meanwhile.
+fn after(bake: &Bake<'_>, settings: &Settings) -> Duration {
     const SECONDS_A_BYTE: f64 = 2e-9;
     let samples =
         settings.nodes() * 6 * settings.face * settings.face * (settings.levels.len() + 1);
-    Duration::from_secs_f64(4.0 * samples as f64 * SECONDS_A_BYTE)
+    let writing = Duration::from_secs_f64(4.0 * samples as f64 * SECONDS_A_BYTE);
+    let estimating = bake.estimating();
+    // Writing takes one thread away from the others.
+    let threads = u32::try_from(rayon::current_num_threads()).unwrap_or(u32::MAX);
+    writing.max(estimating + writing / threads)
 }
 
 /// Shards are sums, whole bakes are tables: a name that says otherwise is a mistake.
@@ -115,7 +119,7 @@ impl Job<'_> {
         let bake = self.bake()?;
         self.goal.until = args.time.map(|time| {
             // Everything is to be said by then.
-            let after = writing(&self.settings) + bake.estimating();
+            let after = after(&bake, &self.settings);
             self.start + time - after.min(time / 2)
         });
         if self.is_done_shard(&bake) {
@@ -243,9 +247,14 @@ impl Job<'_> {
             bake.save(&args.output)?;
         } else {
             let table = bake.snapshot()?;
-            write_table(&table, self.dye, &args.output)?;
+            // The error is estimated while the table is written: a disk is waited for, not computed for.
+            let (error, written) = rayon::join(
+                || bake.error(),
+                || write_table(&table, self.dye, &args.output),
+            );
+            written?;
             report(table.tables(), console);
-            self.say_error(bake, ended);
+            self.say_error(error, bake.photons(), ended);
             if let (true, Some(cache)) = (ended != Ended::Cancelled, &self.cache) {
                 store(&table, cache, console);
             }
@@ -262,9 +271,8 @@ impl Job<'_> {
         Ok(())
     }
 
-    fn say_error(&self, bake: &Bake<'_>, ended: Ended) {
-        let error = 100.0 * bake.error();
-        let photons = bake.photons();
+    fn say_error(&self, error: f64, photons: u64, ended: Ended) {
+        let error = 100.0 * error;
         self.console.say(match ended {
             Ended::Photons | Ended::Cancelled => format!("error of S about {error:.2} %"),
             Ended::Error | Ended::Time => format!(
