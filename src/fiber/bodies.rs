@@ -5,6 +5,10 @@
 //! next until none holds it. Where a ray is follows from the element it starts on, never from the
 //! sign of a distance there, so that rounding can move a hit but not lose one.
 
+mod chord;
+#[cfg(target_arch = "x86_64")]
+mod lanes;
+mod met;
 mod shape;
 
 pub(super) use shape::Shape;
@@ -13,7 +17,9 @@ use super::cells::Cells;
 use super::convex::{Convex, Plane, Quadric, holds};
 use super::grid::Grid;
 use super::section::nearest_image;
+use chord::{OneByOne, Slabs};
 use glam::DVec3;
+use met::Met;
 use std::ops::Range;
 
 /// A convex body in the store.
@@ -24,16 +30,10 @@ struct Body {
     reach2: f64,
     planes: Range<u32>,
     quadrics: Range<u32>,
+    /// Its planes by eights, if it has so many that this is faster.
+    #[cfg(target_arch = "x86_64")]
+    eights: Range<u32>,
     island: bool,
-}
-
-/// Where a ray is in a body, and through which faces it comes and goes.
-#[derive(Clone, Copy, Debug)]
-struct Chord {
-    enter: f64,
-    leave: f64,
-    enter_face: u32,
-    leave_face: u32,
 }
 
 /// The bodies of one period. A face is known by its place among all planes, then among all quadrics.
@@ -45,6 +45,8 @@ pub(super) struct Bodies {
     quadrics: Vec<Quadric>,
     /// The bodies that planes and quadrics belong to.
     owners: [Vec<u32>; 2],
+    #[cfg(target_arch = "x86_64")]
+    eights: lanes::Eights,
     grid: Grid,
     /// Whether some bodies overlap, and whether some are islands.
     unions: bool,
@@ -82,6 +84,8 @@ impl Bodies {
             planes: Vec::new(),
             quadrics: Vec::new(),
             owners: [Vec::new(), Vec::new()],
+            #[cfg(target_arch = "x86_64")]
+            eights: lanes::Eights::new(),
             grid,
             unions,
             cells: None,
@@ -98,6 +102,8 @@ impl Bodies {
                 reach2: c.reach2() + 1e-6,
                 planes: p..store.planes.len() as u32,
                 quadrics: q..store.quadrics.len() as u32,
+                #[cfg(target_arch = "x86_64")]
+                eights: store.eights.add(&c.planes),
                 island: c.island,
             });
         }
@@ -164,6 +170,21 @@ impl Bodies {
         if let Some(cells) = &self.cells {
             return cells.enter(origin, dir, t0, t1, from);
         }
+        #[cfg(target_arch = "x86_64")]
+        if let Some(set) = self.eights.set() {
+            return set.enter(self, (origin, dir), (t0, t1), from);
+        }
+        self.enter_by(OneByOne, (origin, dir), (t0, t1), from)
+    }
+
+    #[inline(always)]
+    fn enter_by(
+        &self,
+        slabs: impl Slabs,
+        (origin, dir): (DVec3, DVec3),
+        (t0, t1): (f64, f64),
+        from: Option<u32>,
+    ) -> Option<(f64, u32)> {
         let start = from.map(|face| self.owner(face));
         if self.islands {
             let within = match start {
@@ -171,7 +192,7 @@ impl Bodies {
                 None => self.find(origin, true),
             };
             if let Some(index) = within {
-                return match self.chord(index, origin, dir, origin.z, from) {
+                return match self.chord(slabs, index, origin, dir, origin.z, from) {
                     Some(chord) => Some((chord.leave.max(0.0), chord.leave_face)),
                     // A ray that only touches leaves where it is.
                     None => from.map(|face| (0.0, face)),
@@ -180,25 +201,32 @@ impl Bodies {
         }
         let mut met = Met::new(self.period);
         let mut best: Option<(f64, u32)> = None;
-        self.grid.walk(origin, dir, t0, t1, |members, z| {
-            for &index in members {
-                // A convex body that has been left is not met again.
-                if met.before(index, z)
-                    || Some(index) == start && self.is_here(index, origin.z, z)
-                    || self.bodies[index as usize].island
-                {
-                    continue;
+        self.grid.walk(
+            origin,
+            dir,
+            t0,
+            t1,
+            #[inline(always)]
+            |members, z| {
+                for &index in members {
+                    // A convex body that has been left is not met again.
+                    if met.before(index, z)
+                        || Some(index) == start && self.is_here(index, origin.z, z)
+                        || self.bodies[index as usize].island
+                    {
+                        continue;
+                    }
+                    let Some(chord) = self.chord(slabs, index, origin, dir, z, None) else {
+                        continue;
+                    };
+                    let t = chord.enter.max(t0);
+                    if t < t1 && chord.leave > t + LEAST_UM && best.is_none_or(|(b, _)| t < b) {
+                        best = Some((t, chord.enter_face));
+                    }
                 }
-                let Some(chord) = self.chord(index, origin, dir, z, None) else {
-                    continue;
-                };
-                let t = chord.enter.max(t0);
-                if t < t1 && chord.leave > t + LEAST_UM && best.is_none_or(|(b, _)| t < b) {
-                    best = Some((t, chord.enter_face));
-                }
-            }
-            best
-        })
+                best
+            },
+        )
     }
 
     /// Where a ray in a void leaves it, and the face.
@@ -208,44 +236,73 @@ impl Bodies {
         if let Some(cells) = &self.cells {
             return cells.leave(origin, dir, from);
         }
+        #[cfg(target_arch = "x86_64")]
+        if let Some(set) = self.eights.set() {
+            return set.leave(self, origin, dir, from);
+        }
+        self.leave_by(OneByOne, origin, dir, from)
+    }
+
+    #[inline(always)]
+    fn leave_by(
+        &self,
+        slabs: impl Slabs,
+        origin: DVec3,
+        dir: DVec3,
+        from: Option<u32>,
+    ) -> Option<(f64, u32)> {
         let start = from.map(|face| self.owner(face));
         let (first, on) = match start {
             Some(index) if !self.bodies[index as usize].island => (index, from),
             _ => (self.find(origin, false)?, None),
         };
-        let mut end = match self.chord(first, origin, dir, origin.z, on) {
+        let mut end = match self.chord(slabs, first, origin, dir, origin.z, on) {
             Some(chord) => (chord.leave.max(0.0), chord.leave_face),
             // A ray that only touches leaves where it is.
             None => (0.0, on?),
         };
         if self.unions {
-            end = self.follow(origin, dir, end);
+            end = self.follow(slabs, origin, dir, end);
         }
         if self.islands {
-            let island = self.grid.walk(origin, dir, 0.0, end.0, |members, z| {
-                let mut best: Option<(f64, u32)> = None;
-                for &index in members {
-                    if Some(index) == start && self.is_here(index, origin.z, z)
-                        || !self.bodies[index as usize].island
-                    {
-                        continue;
+            let island = self.grid.walk(
+                origin,
+                dir,
+                0.0,
+                end.0,
+                #[inline(always)]
+                |members, z| {
+                    let mut best: Option<(f64, u32)> = None;
+                    for &index in members {
+                        if Some(index) == start && self.is_here(index, origin.z, z)
+                            || !self.bodies[index as usize].island
+                        {
+                            continue;
+                        }
+                        if let Some(chord) = self.chord(slabs, index, origin, dir, z, None)
+                            && chord.leave > 0.0
+                            && best.is_none_or(|(b, _)| chord.enter < b)
+                        {
+                            best = Some((chord.enter.max(0.0), chord.enter_face));
+                        }
                     }
-                    if let Some(chord) = self.chord(index, origin, dir, z, None)
-                        && chord.leave > 0.0
-                        && best.is_none_or(|(b, _)| chord.enter < b)
-                    {
-                        best = Some((chord.enter.max(0.0), chord.enter_face));
-                    }
-                }
-                best
-            });
+                    best
+                },
+            );
             return island.filter(|hit| hit.0 < end.0).or(Some(end));
         }
         Some(end)
     }
 
     /// From the end of a chord through all bodies that hold the ray there.
-    fn follow(&self, origin: DVec3, dir: DVec3, mut end: (f64, u32)) -> (f64, u32) {
+    #[inline(always)]
+    fn follow(
+        &self,
+        slabs: impl Slabs,
+        origin: DVec3,
+        dir: DVec3,
+        mut end: (f64, u32),
+    ) -> (f64, u32) {
         for _ in 0..MOST_LINKS {
             let p = origin + end.0 * dir;
             let (mut next, last) = (end, self.owner(end.1));
@@ -253,7 +310,7 @@ impl Bodies {
                 if self.bodies[index as usize].island || index == last {
                     continue;
                 }
-                if let Some(chord) = self.chord(index, origin, dir, p.z, None)
+                if let Some(chord) = self.chord(slabs, index, origin, dir, p.z, None)
                     && chord.enter <= end.0
                     && chord.leave > next.0 + LEAST_UM
                 {
@@ -303,99 +360,5 @@ impl Bodies {
         let quadric = &self.quadrics[index];
         let q = p - self.center_near(body, p.z) - quadric.center;
         quadric.map.transpose() * (quadric.map * q)
-    }
-
-    /// Where a ray is in the image of a body nearest to `z`.
-    ///
-    /// * `on`: the face that the ray starts on; its root there is known to be 0.
-    fn chord(
-        &self,
-        index: u32,
-        origin: DVec3,
-        dir: DVec3,
-        z: f64,
-        on: Option<u32>,
-    ) -> Option<Chord> {
-        let body = &self.bodies[index as usize];
-        let o = origin - self.center_near(body, z);
-        let along = o.dot(dir);
-        if o.length_squared() - along * along > body.reach2 {
-            return None;
-        }
-        let mut chord = Chord {
-            enter: f64::NEG_INFINITY,
-            leave: f64::INFINITY,
-            enter_face: body.planes.start,
-            leave_face: body.planes.start,
-        };
-        for (quadric, face) in self.quadrics_of(body).iter().zip(body.quadrics.clone()) {
-            let face = face | QUADRIC;
-            let (enter, leave) = quadric.inside(o, dir, on == Some(face))?;
-            chord.cut(enter, leave, face);
-        }
-        for (plane, face) in self.planes_of(body).iter().zip(body.planes.clone()) {
-            let rate = plane.normal.dot(dir);
-            let gap = if on == Some(face) {
-                0.0
-            } else {
-                plane.offset - plane.normal.dot(o)
-            };
-            if rate > 0.0 {
-                chord.cut(f64::NEG_INFINITY, gap / rate, face);
-            } else if rate < 0.0 {
-                chord.cut(gap / rate, f64::INFINITY, face);
-            } else if gap < 0.0 {
-                return None;
-            }
-        }
-        (chord.enter < chord.leave).then_some(chord)
-    }
-}
-
-/// The bodies that a ray has been tested with last: they reach over several cells of the grid.
-struct Met {
-    bodies: [u32; Met::KEPT],
-    heights: [f64; Met::KEPT],
-    next: usize,
-    /// Two images of a body are farther apart than this, two cells that it reaches into are nearer.
-    near: f64,
-}
-
-impl Met {
-    /// A power of two.
-    const KEPT: usize = 8;
-
-    #[inline]
-    fn new(period: f64) -> Self {
-        Self {
-            bodies: [u32::MAX; Self::KEPT],
-            heights: [0.0; Self::KEPT],
-            next: 0,
-            near: 0.25 * period,
-        }
-    }
-
-    /// Whether a body's image next to `z` is among them; if not it is from now on.
-    #[inline]
-    fn before(&mut self, index: u32, z: f64) -> bool {
-        let known = (0..Self::KEPT)
-            .any(|i| self.bodies[i] == index && (self.heights[i] - z).abs() < self.near);
-        if !known {
-            (self.bodies[self.next], self.heights[self.next]) = (index, z);
-            self.next = (self.next + 1) % Self::KEPT;
-        }
-        known
-    }
-}
-
-impl Chord {
-    #[inline]
-    fn cut(&mut self, enter: f64, leave: f64, face: u32) {
-        if enter > self.enter {
-            (self.enter, self.enter_face) = (enter, face);
-        }
-        if leave < self.leave {
-            (self.leave, self.leave_face) = (leave, face);
-        }
     }
 }

@@ -64,7 +64,7 @@ impl Quadric {
     }
 
     /// Where a ray is inside; `on` if it starts on the surface.
-    #[inline]
+    #[inline(always)]
     pub(super) fn inside(&self, o: DVec3, dir: DVec3, on: bool) -> Option<(f64, f64)> {
         let (q, e) = (self.map * (o - self.center), self.map * dir);
         let (a, b) = (e.length_squared(), q.dot(e));

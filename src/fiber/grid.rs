@@ -101,7 +101,7 @@ impl Grid {
     ///
     /// * `nearest`: the first hit among items, wherever it is; it also gets a z in the middle of the
     ///   cell, so that the image of an item can be chosen.
-    #[inline]
+    #[inline(always)]
     pub(super) fn walk<T>(
         &self,
         origin: DVec3,

@@ -1,5 +1,6 @@
 //! The shape of one body, for export.
 
+use super::chord::OneByOne;
 use super::{Bodies, holds};
 use glam::DVec3;
 
@@ -63,7 +64,8 @@ impl Shape<'_> {
 
     /// Where a ray from the middle leaves the body, and through which face.
     pub(in crate::fiber) fn surface(&self, dir: DVec3) -> (DVec3, u32) {
-        let chord = (self.bodies).chord(self.index, self.middle, dir, self.middle.z, None);
+        let chord =
+            (self.bodies).chord(OneByOne, self.index, self.middle, dir, self.middle.z, None);
         chord.map_or((self.middle, 0), |chord| {
             (self.middle + chord.leave.max(0.0) * dir, chord.leave_face)
         })

@@ -302,6 +302,21 @@ impl Wide for Avx2 {
     }
 
     #[inline(always)]
+    fn least_of_reals(self, a: Self::Reals) -> (f64, usize) {
+        // SAFETY: as above.
+        let least = unsafe {
+            let four = _mm256_min_pd(a[0], a[1]);
+            let two = _mm_min_pd(
+                _mm256_castpd256_pd128(four),
+                _mm256_extractf128_pd::<1>(four),
+            );
+            _mm_cvtsd_f64(_mm_min_sd(two, _mm_unpackhi_pd(two, two)))
+        };
+        let there = self.bits_of_mask(self.equal(a, self.splat(least)));
+        (least, there.trailing_zeros() as usize & 7)
+    }
+
+    #[inline(always)]
     fn least(self, [low, high]: Self::Shorts) -> (f32, usize) {
         // SAFETY: as above.
         unsafe {

@@ -221,6 +221,16 @@ impl Wide for Avx512 {
     }
 
     #[inline(always)]
+    fn least_of_reals(self, a: __m512d) -> (f64, usize) {
+        // SAFETY: as above.
+        unsafe {
+            let least = _mm512_reduce_min_pd(a);
+            let there = _mm512_cmp_pd_mask::<_CMP_EQ_OQ>(a, _mm512_set1_pd(least));
+            (least, there.trailing_zeros() as usize & 7)
+        }
+    }
+
+    #[inline(always)]
     fn least(self, a: __m512) -> (f32, usize) {
         // SAFETY: as above.
         unsafe {

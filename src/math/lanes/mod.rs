@@ -92,6 +92,12 @@ impl<W: Wide> F64x8<W> {
         U64x8(self.0, self.0.whole(self.1))
     }
 
+    /// The least of all, and the first lane that has it. None of them may be undefined.
+    #[inline(always)]
+    pub(crate) fn least(self) -> (f64, usize) {
+        self.0.least_of_reals(self.1)
+    }
+
     #[inline(always)]
     pub(crate) fn bits(self) -> U64x8<W> {
         U64x8(self.0, self.0.bits_of(self.1))

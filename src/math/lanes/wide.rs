@@ -52,6 +52,9 @@ pub(crate) trait Wide: Copy {
     fn at_most(self, a: Self::Reals, b: Self::Reals) -> Self::Mask;
     fn equal(self, a: Self::Reals, b: Self::Reals) -> Self::Mask;
 
+    /// See [`F64x8::least`].
+    fn least_of_reals(self, a: Self::Reals) -> (f64, usize);
+
     fn bits_of(self, a: Self::Reals) -> Self::Wholes;
     fn of_bits(self, a: Self::Wholes) -> Self::Reals;
     /// See [`F64x8::whole`].
