@@ -172,7 +172,7 @@ impl Bodies {
         }
         #[cfg(target_arch = "x86_64")]
         if let Some(set) = self.eights.set() {
-            return set.enter(self, (origin, dir), (t0, t1), from);
+            return self.enter_in_lanes(set, (origin, dir), (t0, t1), from);
         }
         self.enter_by(OneByOne, (origin, dir), (t0, t1), from)
     }
@@ -238,7 +238,7 @@ impl Bodies {
         }
         #[cfg(target_arch = "x86_64")]
         if let Some(set) = self.eights.set() {
-            return set.leave(self, origin, dir, from);
+            return self.leave_in_lanes(set, origin, dir, from);
         }
         self.leave_by(OneByOne, origin, dir, from)
     }

@@ -15,7 +15,7 @@ mod ways;
 use super::Flight;
 use super::entry::Photon;
 use crate::fiber::{Fiber, Optics, PacketShell, Part, Region};
-use crate::math::lanes::{Avx2, Avx512, Row, Wide};
+use crate::math::lanes::{Avx2, Avx512, Row, Set, Wide};
 use flock::Flock;
 
 /// Boundaries that a photon may meet, each from both sides: the second of a pair from inside.
@@ -39,9 +39,9 @@ enum With<'a> {
 impl<'a> Company<'a> {
     /// `None` where the processor has neither set, or photons of the fiber fly alone: see [`Packets::new`].
     pub(super) fn new(fiber: &'a Fiber) -> Option<Self> {
-        let packets = match Avx512::detect() {
-            Some(simd) => With::Avx512(Packets::new(simd, fiber)?),
-            None => With::Avx2(Packets::new(Avx2::detect()?, fiber)?),
+        let packets = match Set::detect()? {
+            Set::Avx512(simd) => With::Avx512(Packets::new(simd, fiber)?),
+            Set::Avx2(simd) => With::Avx2(Packets::new(simd, fiber)?),
         };
         Some(Self(packets))
     }

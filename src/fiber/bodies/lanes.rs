@@ -3,19 +3,12 @@
 use super::chord::{Chord, OneByOne, Slabs};
 use super::{Bodies, Body};
 use crate::fiber::convex::Plane;
-use crate::math::lanes::{Avx2, Avx512, LANES, Row, Vectors, Wide};
+use crate::math::lanes::{LANES, Row, Set, Vectors, Wide};
 use glam::DVec3;
 use std::ops::Range;
 
 /// Bodies of fewer planes are cut by one after another.
 const FEWEST: usize = 4;
-
-/// The instruction set that the processor has.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Set {
-    Avx512(Avx512),
-    Avx2(Avx2),
-}
 
 /// Planes by eights, in the order of the bodies.
 #[derive(Clone, Debug)]
@@ -27,12 +20,10 @@ pub(super) struct Eights {
 
 impl Eights {
     pub(super) fn new() -> Self {
-        let set = match Avx512::detect() {
-            Some(simd) => Some(Set::Avx512(simd)),
-            None => Avx2::detect().map(Set::Avx2),
-        };
-        let rows = Vec::new();
-        Self { set, rows }
+        Self {
+            set: Set::detect(),
+            rows: Vec::new(),
+        }
     }
 
     /// Adds the planes of a body; where they are.
@@ -62,43 +53,43 @@ impl Eights {
     }
 }
 
-impl Set {
+impl Bodies {
     /// See [`Bodies::enter`].
-    pub(super) fn enter(
-        self,
-        bodies: &Bodies,
+    pub(super) fn enter_in_lanes(
+        &self,
+        set: Set,
         ray: (DVec3, DVec3),
         part: (f64, f64),
         from: Option<u32>,
     ) -> Option<(f64, u32)> {
-        match self {
-            Self::Avx512(simd) => simd.run(
+        match set {
+            Set::Avx512(simd) => simd.run(
                 #[inline(always)]
-                || bodies.enter_by(ByEight(simd), ray, part, from),
+                || self.enter_by(ByEight(simd), ray, part, from),
             ),
-            Self::Avx2(simd) => simd.run(
+            Set::Avx2(simd) => simd.run(
                 #[inline(always)]
-                || bodies.enter_by(ByEight(simd), ray, part, from),
+                || self.enter_by(ByEight(simd), ray, part, from),
             ),
         }
     }
 
     /// See [`Bodies::leave`].
-    pub(super) fn leave(
-        self,
-        bodies: &Bodies,
+    pub(super) fn leave_in_lanes(
+        &self,
+        set: Set,
         origin: DVec3,
         dir: DVec3,
         from: Option<u32>,
     ) -> Option<(f64, u32)> {
-        match self {
-            Self::Avx512(simd) => simd.run(
+        match set {
+            Set::Avx512(simd) => simd.run(
                 #[inline(always)]
-                || bodies.leave_by(ByEight(simd), origin, dir, from),
+                || self.leave_by(ByEight(simd), origin, dir, from),
             ),
-            Self::Avx2(simd) => simd.run(
+            Set::Avx2(simd) => simd.run(
                 #[inline(always)]
-                || bodies.leave_by(ByEight(simd), origin, dir, from),
+                || self.leave_by(ByEight(simd), origin, dir, from),
             ),
         }
     }

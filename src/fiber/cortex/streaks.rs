@@ -5,6 +5,8 @@ mod lanes;
 
 use super::Lean;
 use crate::fiber::section::{UnitRay, floor, smaller};
+#[cfg(target_arch = "x86_64")]
+use crate::math::lanes::Set;
 use crate::sampling::{Rng, hash64};
 
 /// Width of a streak, micrometers: some granules side by side.
@@ -29,7 +31,7 @@ pub(super) struct Streaks {
     /// Column by column, where its cells begin, in cells, and the density of each; the mean of these is 1.
     columns: Vec<f32>,
     #[cfg(target_arch = "x86_64")]
-    lanes: Option<lanes::Set>,
+    set: Option<Set>,
 }
 
 /// What the density of a streak is multiplied by.
@@ -84,7 +86,7 @@ impl Streaks {
             per_um: f64::from(count) / period,
             columns,
             #[cfg(target_arch = "x86_64")]
-            lanes: lanes::Set::detect(),
+            set: Set::detect(),
         }
     }
 
@@ -92,8 +94,8 @@ impl Streaks {
     pub(super) fn integral(&self, ray: &UnitRay, t0: f64, t1: f64, shade: &Shade) -> f64 {
         #[cfg(target_arch = "x86_64")]
         if let Some(sum) = self
-            .lanes
-            .and_then(|set| set.integral(self, ray, (t0, t1), shade))
+            .set
+            .and_then(|set| self.integral_in_lanes(set, ray, (t0, t1), shade))
         {
             return sum;
         }

@@ -2,9 +2,8 @@
 
 use super::super::Bodies;
 use super::super::chord::OneByOne;
-use super::Set;
 use crate::fiber::convex::{Convex, Plane, Quadric};
-use crate::math::lanes::{Avx2, Avx512};
+use crate::math::lanes::Set;
 use crate::sampling::Rng;
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -54,9 +53,7 @@ fn bodies() -> Bodies {
 #[test]
 fn bodies_by_eight_planes_are_met_and_left_as_by_one() {
     let bodies = bodies();
-    let wide = Avx512::detect().map(Set::Avx512);
-    let narrow = Avx2::detect().map(Set::Avx2);
-    for set in wide.into_iter().chain(narrow) {
+    for set in Set::all() {
         let (mut entered, mut left) = (0, 0);
         for i in 0..3000 {
             let mut rng = Rng::new(7, i);
@@ -70,15 +67,18 @@ fn bodies_by_eight_planes_are_met_and_left_as_by_one() {
             let mut from = None;
             for _ in 0..30 {
                 let expected = bodies.enter_by(OneByOne, (at, dir), (0.0, 50.0), from);
-                assert_eq!(set.enter(&bodies, (at, dir), (0.0, 50.0), from), expected);
+                assert_eq!(
+                    bodies.enter_in_lanes(set, (at, dir), (0.0, 50.0), from),
+                    expected
+                );
                 let Some((t, face)) = expected else { break };
                 entered += 1;
                 (at, from) = (at + t * dir, Some(face));
                 // Back through the face that it lies on.
                 let expected = bodies.leave_by(OneByOne, at, -dir, from);
-                assert_eq!(set.leave(&bodies, at, -dir, from), expected);
+                assert_eq!(bodies.leave_in_lanes(set, at, -dir, from), expected);
                 let expected = bodies.leave_by(OneByOne, at, dir, from);
-                assert_eq!(set.leave(&bodies, at, dir, from), expected);
+                assert_eq!(bodies.leave_in_lanes(set, at, dir, from), expected);
                 let Some((t, face)) = expected else { break };
                 left += 1;
                 (at, from) = (at + t * dir, Some(face));

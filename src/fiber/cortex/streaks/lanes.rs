@@ -5,14 +5,7 @@
 
 use super::{Axial, Axis, Shade, Streaks};
 use crate::fiber::section::UnitRay;
-use crate::math::lanes::{Avx2, Avx512, LANES, Merge, Row, Wide};
-
-/// The instruction set that the processor has.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Set {
-    Avx512(Avx512),
-    Avx2(Avx2),
-}
+use crate::math::lanes::{LANES, Merge, Row, Set, Wide};
 
 /// Rows of columns that are found before they are looked into.
 const ROWS: usize = 4;
@@ -57,38 +50,28 @@ struct Way {
     steps: [u32; 2],
 }
 
-impl Set {
-    /// Asks the processor.
-    pub(super) fn detect() -> Option<Self> {
-        match Avx512::detect() {
-            Some(simd) => Some(Self::Avx512(simd)),
-            None => Avx2::detect().map(Self::Avx2),
-        }
-    }
-
+impl Streaks {
     /// See [`Streaks::integral`]. `None` for a part that leaves the table, or passes few columns.
     #[inline]
-    pub(super) fn integral(
-        self,
-        streaks: &Streaks,
+    pub(super) fn integral_in_lanes(
+        &self,
+        set: Set,
         ray: &UnitRay,
         part: (f64, f64),
         shade: &Shade,
     ) -> Option<f64> {
-        match self {
-            Self::Avx512(simd) => simd.run(
+        match set {
+            Set::Avx512(simd) => simd.run(
                 #[inline(always)]
-                || streaks.integral_by(simd, ray, part, shade),
+                || self.integral_by(simd, ray, part, shade),
             ),
-            Self::Avx2(simd) => simd.run(
+            Set::Avx2(simd) => simd.run(
                 #[inline(always)]
-                || streaks.integral_by(simd, ray, part, shade),
+                || self.integral_by(simd, ray, part, shade),
             ),
         }
     }
-}
 
-impl Streaks {
     #[inline(always)]
     fn integral_by<W: Wide>(
         &self,
