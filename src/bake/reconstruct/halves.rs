@@ -13,16 +13,14 @@ use crate::bake::noise::{Noise, Norm};
 use crate::bake::tally::Tally;
 use rayon::prelude::*;
 
-/// Squared error of a filtered map over its variance: 1.0 to 2.1 in bakes of human hair, red fox and
-/// polar bear with 3e4 to 2e5 photons.
-const BIASED: f64 = 1.5;
+/// Squared error of a filtered map over its variance: 1.0 to 2.3 in bakes of six animals with 2.5e4 to 1e5 photons.
+const BIASED: f64 = 1.65;
 /// How uncertain that is, relative to the squared error.
 const BIASED_WITHIN: f64 = 0.35;
 /// How much more uncertain than independent photons of one weight the other reading is.
 const SPREAD: f64 = 1.5;
-/// How much the squared error falls from half of the photons to all: 1.5 to 2.4, 1.95 in the mean, in bakes of 37 animals
-/// with 2.5e4 to 9.8e4 photons. At 1.6 stated errors were a fifth too high.
-const HALVED: f64 = 1.95;
+/// How much the squared error falls from half of the photons to all: 1.4 to 2.1 in the same bakes.
+const HALVED: f64 = 1.75;
 
 /// What the halves say of one node, in common units.
 #[derive(Clone, Copy, Debug, Default)]
