@@ -15,7 +15,7 @@ use crate::math::widest;
 const MOST: usize = 128;
 
 /// How much noise counts in the second round, where it is held against the first round's result, which has lost part of
-/// the signal: at 1 errors are a tenth larger, at 0.1 noise of 2.5e4 photons passes for signal (mink, rabbit).
+/// the signal: at 1 errors are a twentieth to a tenth larger, at 0.1 noise passes for signal with 2.5e4 photons.
 const AFTER_PILOT: f32 = 0.25;
 
 /// Exposure at all steps along x and y, the latter running fastest.
