@@ -13,7 +13,7 @@ use crate::bake::noise::{Noise, Norm};
 use crate::bake::tally::Tally;
 use rayon::prelude::*;
 
-/// Squared error of a filtered map over its variance: 1.4 to 3.9 in bakes of human hair, polar bear and red fox with
+/// Squared error of a filtered map over its variance: 1.4 to 3.5 in bakes of human hair, polar bear and red fox with
 /// 2.5e4 and 6e4 photons, held against plain counts. Lower and tables are worse than they say.
 const BIASED: f64 = 2.3;
 /// How uncertain that is, relative to the squared error.
