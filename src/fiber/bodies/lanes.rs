@@ -3,7 +3,7 @@
 use super::chord::{Chord, OneByOne, Slabs};
 use super::{Bodies, Body};
 use crate::fiber::convex::Plane;
-use crate::math::lanes::{LANES, Row, Set, Vectors, Wide};
+use crate::math::lanes::{LANES, Row, Set, Vectors, Wide, run_with};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -62,16 +62,7 @@ impl Bodies {
         part: (f64, f64),
         from: Option<u32>,
     ) -> Option<(f64, u32)> {
-        match set {
-            Set::Avx512(simd) => simd.run(
-                #[inline(always)]
-                || self.enter_by(ByEight(simd), ray, part, from),
-            ),
-            Set::Avx2(simd) => simd.run(
-                #[inline(always)]
-                || self.enter_by(ByEight(simd), ray, part, from),
-            ),
-        }
+        run_with!(set, |simd| self.enter_by(ByEight(simd), ray, part, from))
     }
 
     /// See [`Bodies::leave`].
@@ -82,16 +73,7 @@ impl Bodies {
         dir: DVec3,
         from: Option<u32>,
     ) -> Option<(f64, u32)> {
-        match set {
-            Set::Avx512(simd) => simd.run(
-                #[inline(always)]
-                || self.leave_by(ByEight(simd), origin, dir, from),
-            ),
-            Set::Avx2(simd) => simd.run(
-                #[inline(always)]
-                || self.leave_by(ByEight(simd), origin, dir, from),
-            ),
-        }
+        run_with!(set, |simd| self.leave_by(ByEight(simd), origin, dir, from))
     }
 }
 

@@ -19,7 +19,7 @@ mod wide;
 pub(crate) use avx2::Avx2;
 pub(crate) use avx512::Avx512;
 pub(crate) use merge::Merge;
-pub(crate) use set::Set;
+pub(crate) use set::{Set, run_with};
 pub(crate) use single::{F32x16, Singles};
 pub(crate) use vectors::Vectors;
 pub(crate) use wide::Wide;

@@ -22,3 +22,21 @@ impl Set {
         Self::all().next()
     }
 }
+
+/// What is written for any [`Wide`](super::Wide), compiled for an instruction set and run with it.
+macro_rules! run_with {
+    ($set:expr, |$simd:ident| $run:expr) => {
+        match $set {
+            $crate::math::lanes::Set::Avx512($simd) => $simd.run(
+                #[inline(always)]
+                || $run,
+            ),
+            $crate::math::lanes::Set::Avx2($simd) => $simd.run(
+                #[inline(always)]
+                || $run,
+            ),
+        }
+    };
+}
+
+pub(crate) use run_with;

@@ -3,16 +3,15 @@
 use super::super::Bodies;
 use super::super::chord::OneByOne;
 use crate::fiber::convex::{Convex, Plane, Quadric};
+use crate::math::frame;
 use crate::math::lanes::Set;
 use crate::sampling::Rng;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
 fn direction(rng: &mut Rng) -> DVec3 {
-    let z = 2.0 * rng.uniform() - 1.0;
-    let (sin, cos) = (TAU * rng.uniform()).sin_cos();
-    let r = (1.0 - z * z).sqrt();
-    DVec3::new(r * cos, r * sin, z)
+    let sin = 2.0 * rng.uniform() - 1.0;
+    frame::direction(sin.asin(), TAU * rng.uniform())
 }
 
 /// Prisms of 3 to 17 sides, some of them rounded, that overlap here and there.

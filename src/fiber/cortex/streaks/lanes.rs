@@ -5,7 +5,7 @@
 
 use super::{Axial, Axis, Shade, Streaks};
 use crate::fiber::section::UnitRay;
-use crate::math::lanes::{LANES, Merge, Row, Set, Wide};
+use crate::math::lanes::{LANES, Merge, Row, Set, Wide, run_with};
 
 /// Rows of columns that are found before they are looked into.
 const ROWS: usize = 4;
@@ -60,16 +60,7 @@ impl Streaks {
         part: (f64, f64),
         shade: &Shade,
     ) -> Option<f64> {
-        match set {
-            Set::Avx512(simd) => simd.run(
-                #[inline(always)]
-                || self.integral_by(simd, ray, part, shade),
-            ),
-            Set::Avx2(simd) => simd.run(
-                #[inline(always)]
-                || self.integral_by(simd, ray, part, shade),
-            ),
-        }
+        run_with!(set, |simd| self.integral_by(simd, ray, part, shade))
     }
 
     #[inline(always)]
