@@ -37,7 +37,8 @@ fn matched(mut animal: Species, on: &str) -> (Species, Vec<String>) {
     (animal, said)
 }
 
-/// Mean over what is not backdrop, of another size and noise than colors are matched with.
+/// Mean over what is not backdrop, of another size and noise than colors are matched with; with a quarter of the samples
+/// it is off by 2 % itself.
 fn shown(animal: &Species, on: &str) -> Rgb {
     let skin = skin::load(on).unwrap();
     let cancel = Cancel::default();
@@ -55,7 +56,7 @@ fn shown(animal: &Species, on: &str) -> Rgb {
     });
     let job = RenderJob {
         resolution: [120, 90],
-        spp: 16,
+        spp: 64,
         seed: 9,
         sampler: Sampler::Qsir,
         ..RenderJob::default()
@@ -83,10 +84,11 @@ fn what_is_asked_for_is_shown() {
         let (animal, said) = matched(animal, on);
         assert!(said.is_empty(), "{said:?}");
         let shown = shown(&animal, on);
+        // Within 2 % is promised; looked up only once the human's red is off by that.
         for c in 0..3 {
             let off = f64::from(shown[c]) / color[c] - 1.0;
             assert!(
-                off.abs() < 0.02,
+                off.abs() < 0.015,
                 "{} on {on}, asked for {color:?}, shows {shown}",
                 animal.id
             );

@@ -14,6 +14,10 @@ use crate::math::widest;
 /// Most cells around that a row and its scales have.
 const MOST: usize = 128;
 
+/// How much noise counts in the second round, where it is held against the first round's result, which has lost part of
+/// the signal: at 1 errors are a twentieth to a tenth larger, at 0.1 noise passes for signal with 2.5e4 photons.
+const AFTER_PILOT: f32 = 0.25;
+
 /// Exposure at all steps along x and y, the latter running fastest.
 pub(super) struct Planes(Vec<Vec<Plane>>);
 
@@ -167,7 +171,7 @@ impl Pyramid {
             let bands = self.split(plane, field, &mut pool);
             let mut gains = around.shares(&bands, plane, noise, &mut pool, |signal, noise| {
                 if signal > 0.0 {
-                    signal / (signal + noise)
+                    signal / (signal + AFTER_PILOT * noise)
                 } else {
                     0.0
                 }
