@@ -73,7 +73,8 @@ impl Bodies {
             .iter()
             .map(|c| (c.center - c.half, c.center + c.half))
             .collect();
-        let size = (1.5 * mean).clamp(DVec3::splat(0.2), DVec3::splat(0.25 * period));
+        // With cells twice as wide more bodies are tested: a twentieth of a hare's bake.
+        let size = (0.7 * mean).clamp(DVec3::splat(0.2), DVec3::splat(0.25 * period));
         let grid = Grid::new(half, period, size, &boxes, |index, lo, hi| {
             convex[index].may_touch(lo, hi)
         });

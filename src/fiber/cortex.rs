@@ -113,9 +113,9 @@ impl Pigment {
         for _ in 0..MOST_CROSSINGS {
             let rest = ray.from(at);
             let next = if inside {
-                rim.leave(&rest, from)
+                rim.leave(&rest, from, t - at)
             } else {
-                rim.enter(&rest, from)
+                rim.enter(&rest, from, t - at)
             };
             let end = next.map_or(t, |(way, _)| (at + way).min(t));
             sum += if inside {

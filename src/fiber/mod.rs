@@ -5,6 +5,7 @@
 
 mod bodies;
 mod cells;
+mod clearance;
 mod convex;
 mod cortex;
 mod crossing;
@@ -167,7 +168,11 @@ impl Fiber {
             pattern = Some(Pattern::bare(&lines, period_um));
         }
         let surface = pattern.map_or(Surface::Smooth, |pattern| {
-            Surface::Scales(Box::new(Scales::new(&pattern, &lines)))
+            let scales = Scales::new(&pattern, &lines);
+            Surface::Scales(Box::new(match section.is_ellipse() {
+                true => scales,
+                false => scales.with_clearance(),
+            }))
         });
         let bounding_radius_um = match &surface {
             Surface::Scales(scales) if !section.is_ellipse() => {

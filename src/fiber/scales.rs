@@ -10,6 +10,7 @@
 
 pub(super) mod seek;
 
+use super::clearance::Clearance;
 use super::pattern::Pattern;
 use super::section::{Line, Section, larger, smaller};
 use glam::DVec3;
@@ -109,6 +110,8 @@ pub(super) struct Scales {
     /// these circles is past them.
     pub(super) within2: f64,
     pub(super) beyond2: f64,
+    /// For sections that are no ellipse.
+    pub(super) clearance: Option<Box<Clearance>>,
 }
 
 /// How far above rounding the enclosing radii keep from the surface.
@@ -161,7 +164,38 @@ impl Scales {
             rho_max: 1.0 + highest + margin,
             within2: (1.0 + lowest - margin + 0.5 * MARGIN).powi(2),
             beyond2: (1.0 + highest + margin - 0.5 * MARGIN).powi(2),
+            clearance: None,
         }
+    }
+
+    /// Lets rays know when they are far from the surface.
+    pub(super) fn with_clearance(self) -> Self {
+        let clearance = Clearance::new(&self);
+        Self {
+            clearance: Some(Box::new(clearance)),
+            ..self
+        }
+    }
+
+    /// Bounds of the least and the greatest radius over z on the first half plane of every sector, between
+    /// two of which bounds go linearly in `u`.
+    pub(super) fn extremes(&self) -> Vec<[f64; 2]> {
+        let count = self.sectors.len();
+        let mut extremes = vec![[f64::INFINITY, f64::NEG_INFINITY]; count];
+        for (i, sector) in self.sectors.iter().enumerate() {
+            for strip in sector.stack(&self.strips) {
+                // Where its ends slope a strip between the planes has heights that it has on neither.
+                let low = smaller(strip.begin[0], strip.begin[1]);
+                let high = larger(strip.end[0], strip.end[1]);
+                for (u, z) in [(0, low), (0, high), (1, low), (1, high)] {
+                    let radius = 1.0 + strip.height_at(u as f64, z);
+                    let [least, greatest] = &mut extremes[(i + u) % count];
+                    *least = smaller(*least, radius);
+                    *greatest = larger(*greatest, radius);
+                }
+            }
+        }
+        extremes
     }
 
     /// Radius of a cylinder about the axis that holds the surface, micrometers.
@@ -207,6 +241,12 @@ impl Scales {
 
     /// Whether a point is inside the surface.
     pub(super) fn contains(&self, p: DVec3) -> bool {
+        if let Some(clearance) = &self.clearance {
+            let clear = clearance.at(p.x, p.y);
+            if clear != 0.0 {
+                return clear > 0.0;
+            }
+        }
         let rho = (p.x * p.x + p.y * p.y).sqrt();
         if rho <= self.rho_min || rho >= self.rho_max {
             return rho <= self.rho_min;

@@ -2,7 +2,7 @@
 
 use super::march::{March, Side, StartOn};
 use super::scales::{Cell, Scales, at};
-use super::section::{UnitRay, nearest_period};
+use super::section::{UnitRay, nearest_period, smaller};
 use glam::DVec3;
 
 /// The outer boundary in the unit-circle frame.
@@ -77,21 +77,7 @@ impl Surface {
                 // The section is convex: a ray that starts on it and leaves is gone.
                 (from.is_none() && t >= 0.0).then(|| smooth_hit(ray, t))
             }
-            Self::Scales(scales) => {
-                let (t0, t1) = ray.inside_circle(scales.rho_max)?;
-                if t1 <= 0.0 {
-                    return None;
-                }
-                let t0 = t0.max(0.0);
-                // The cells' half planes tell no side beyond the axis: end within all scales, where
-                // the ray has entered for certain.
-                let t1 = match ray.inside_circle(scales.rho_min) {
-                    Some((inner, _)) if inner > t0 => inner,
-                    _ => t1,
-                };
-                let (cell, on) = scales.start(ray, t0, from, Side::Outside);
-                outer_hit(scales.march(ray, t0, cell, Side::Outside, on, t1))
-            }
+            Self::Scales(scales) => scales.enter(ray, from, f64::INFINITY),
         }
     }
 
@@ -168,6 +154,41 @@ impl Scales {
             }
             Some(OuterState::Smooth) | None => (self.locate(ray.at(t)), StartOn::Nothing),
         }
+    }
+
+    /// Where a ray outside enters the surface up to `limit`.
+    pub(super) fn enter(
+        &self,
+        ray: &UnitRay,
+        from: Option<OuterState>,
+        limit: f64,
+    ) -> Option<OuterHit> {
+        let (t0, t1) = ray.inside_circle(self.rho_max)?;
+        if t1 <= 0.0 {
+            return None;
+        }
+        let mut begin = t0.max(0.0);
+        // The cells' half planes tell no side beyond the axis: end within all scales, where
+        // the ray has entered for certain.
+        let mut end = match ray.inside_circle(self.rho_min) {
+            Some((inner, _)) if inner > begin => inner,
+            _ => t1,
+        };
+        end = smaller(end, limit);
+        match (&self.clearance, from) {
+            (Some(clearance), None) => {
+                begin = clearance.until(ray, Side::Outside, begin, end);
+                if begin > end {
+                    return None;
+                }
+            }
+            (Some(clearance), Some(_)) => {
+                end = clearance.dive(ray, Side::Outside, end).unwrap_or(end);
+            }
+            (None, _) => {}
+        }
+        let (cell, on) = self.start(ray, begin, from, Side::Outside);
+        outer_hit(self.march(ray, begin, cell, Side::Outside, on, end))
     }
 
     /// The periodic image of a strip that a point on its face or its upper end belongs to.

@@ -223,7 +223,7 @@ impl Fiber {
                 Some(Element::Rim(state)) => Some(state),
                 _ => None,
             };
-            let (t, state) = rim.enter(&rays.unit, from)?;
+            let (t, state) = rim.enter(&rays.unit, from, f64::INFINITY)?;
             return (t >= t0 && t < t1).then_some((t, Element::Rim(state)));
         }
         if self.medulla.outlined() {
@@ -273,7 +273,7 @@ impl Fiber {
                 Some(Element::Rim(state)) => Some(state),
                 _ => None,
             };
-            let (t, state) = rim.leave(&rays.unit, from)?;
+            let (t, state) = rim.leave(&rays.unit, from, f64::INFINITY)?;
             return Some(self.outline_hit(rays, t, Element::Rim(state), Region::Cortex));
         }
         let UnitRay { a, b, c, .. } = rays.unit;

@@ -2,7 +2,7 @@
 //! it, in the bulges of a dumb-bell, and a straight way to it may lead through the air.
 
 use super::march::{March, Side, StartOn};
-use super::scales::Scales;
+use super::scales::{Cell, Scales};
 use super::section::UnitRay;
 use super::surface::{Inward, OuterHit, OuterState, outer_hit};
 
@@ -37,14 +37,39 @@ impl Scales {
     }
 
     /// Where a ray inside leaves the fiber up to `limit`.
-    fn leave_before(&self, ray: &UnitRay, from: Option<OuterState>, limit: f64) -> Leaves {
+    pub(super) fn leave_before(
+        &self,
+        ray: &UnitRay,
+        from: Option<OuterState>,
+        limit: f64,
+    ) -> Leaves {
         let inner = ray.inside_circle(self.rho_min).filter(|&(_, t1)| t1 > 0.0);
+        match (&self.clearance, from) {
+            (Some(clearance), None) => {
+                let begin = clearance.until(ray, Side::Inside, 0.0, limit);
+                if begin > limit {
+                    return Leaves::Not;
+                }
+                // The cells' half planes tell no side beyond the axis.
+                if begin < f64::INFINITY && inner.is_none_or(|(_, t1)| t1 <= begin) {
+                    let start = (self.locate(ray.at(begin)), StartOn::Nothing);
+                    return self.leave_within(ray, begin, start, limit);
+                }
+            }
+            (Some(clearance), Some(_)) => {
+                if let Some(stop) = clearance.dive(ray, Side::Inside, limit) {
+                    let start = self.start(ray, 0.0, from, Side::Inside);
+                    return self.leave_within(ray, 0.0, start, stop);
+                }
+            }
+            (None, _) => {}
+        }
         if ray.c >= self.rho_min * self.rho_min || inner.is_none() {
-            let (cell, on) = self.start(ray, 0.0, from, Side::Inside);
+            let start = self.start(ray, 0.0, from, Side::Inside);
             let stop = inner.map_or(limit, |(t0, _)| t0.max(0.0).min(limit));
-            match self.march(ray, 0.0, cell, Side::Inside, on, stop) {
-                March::Through => {}
-                march => return outer_hit(march).map_or(Leaves::Lost, Leaves::Outer),
+            match self.leave_within(ray, 0.0, start, stop) {
+                Leaves::Not => {}
+                leaves => return leaves,
             }
         }
         // The circle inside lies within all scales.
@@ -53,8 +78,19 @@ impl Scales {
             Some((_, t1)) if t1 < limit => t1,
             _ => return Leaves::Not,
         };
-        let cell = self.locate(ray.at(far));
-        match self.march(ray, far, cell, Side::Inside, StartOn::Nothing, limit) {
+        let start = (self.locate(ray.at(far)), StartOn::Nothing);
+        self.leave_within(ray, far, start, limit)
+    }
+
+    /// A march inside from `begin` up to `limit`.
+    fn leave_within(
+        &self,
+        ray: &UnitRay,
+        begin: f64,
+        (cell, on): (Cell, StartOn),
+        limit: f64,
+    ) -> Leaves {
+        match self.march(ray, begin, cell, Side::Inside, on, limit) {
             March::Through => Leaves::Not,
             march => outer_hit(march).map_or(Leaves::Lost, Leaves::Outer),
         }
@@ -62,7 +98,7 @@ impl Scales {
 }
 
 /// What becomes of a ray on its way out.
-enum Leaves {
+pub(super) enum Leaves {
     Outer(OuterHit),
     /// Not up to the limit.
     Not,

@@ -3,13 +3,14 @@
 use crate::fiber::pattern::Pattern;
 use crate::fiber::scales::Scales;
 use crate::fiber::section::{Line, Section, UnitRay};
-use crate::fiber::surface::{Inward, OuterState, Surface};
+use crate::fiber::surface::OuterState;
+use crate::fiber::waist::Leaves;
 use glam::DVec3;
 
 /// A cylinder over the outline, in the unit-circle frame.
 #[derive(Clone, Debug)]
 pub(in crate::fiber) struct Rim {
-    surface: Surface,
+    scales: Scales,
 }
 
 impl Rim {
@@ -23,49 +24,53 @@ impl Rim {
             .collect();
         let bare = Pattern::bare(&lines, 1.0);
         Self {
-            surface: Surface::Scales(Box::new(Scales::new(&bare, &lines))),
+            scales: Scales::new(&bare, &lines).with_clearance(),
         }
+    }
+
+    #[cfg(test)]
+    pub(in crate::fiber) fn march_all_the_way(&mut self) {
+        self.scales.clearance = None;
     }
 
     /// Radius of a circle that holds it.
     pub(super) fn reach(&self) -> f64 {
-        self.surface.rho_max()
+        self.scales.rho_max
     }
 
     /// Whether a point is inside.
     pub(in crate::fiber) fn holds(&self, unit: DVec3) -> bool {
-        self.surface.contains(unit)
+        self.scales.contains(unit)
     }
 
-    /// Where a ray outside enters it.
+    /// Where a ray outside enters it up to `limit`.
     ///
     /// * `from`: what of it the ray starts on.
     pub(in crate::fiber) fn enter(
         &self,
         ray: &UnitRay,
         from: Option<OuterState>,
+        limit: f64,
     ) -> Option<(f64, OuterState)> {
-        let hit = self.surface.enter(ray, from)?;
+        let hit = self.scales.enter(ray, from, limit)?;
         Some((hit.t, hit.state))
     }
 
-    /// Where a ray inside leaves it.
+    /// Where a ray inside leaves it up to `limit`.
     pub(in crate::fiber) fn leave(
         &self,
         ray: &UnitRay,
         from: Option<OuterState>,
+        limit: f64,
     ) -> Option<(f64, OuterState)> {
-        match self.surface.leave(ray, from, |_, _| None::<()>) {
-            Inward::Outer(hit) => Some((hit.t, hit.state)),
-            Inward::Core(()) | Inward::Lost => None,
+        match self.scales.leave_before(ray, from, limit) {
+            Leaves::Outer(hit) => Some((hit.t, hit.state)),
+            Leaves::Not | Leaves::Never | Leaves::Lost => None,
         }
     }
 
     /// Outward normal at a point on it, in the unit-circle frame, of any length.
     pub(in crate::fiber) fn gradient(&self, p: DVec3) -> DVec3 {
-        match &self.surface {
-            Surface::Smooth => p.with_z(0.0),
-            Surface::Scales(scales) => scales.face_gradient(scales.locate(p), p),
-        }
+        self.scales.face_gradient(self.scales.locate(p), p)
     }
 }

@@ -59,20 +59,26 @@ impl Scales {
         }
     }
 
-    /// The cell that holds a point of the unit-circle frame.
-    #[inline]
-    pub(in crate::fiber) fn locate(&self, p: DVec3) -> Cell {
-        let angle = pseudo_angle(p.x, p.y) * (ANGLE_STEPS as f64 / 4.0);
+    /// The sector that holds a place of the unit-circle frame.
+    #[inline(always)]
+    pub(in crate::fiber) fn sector(&self, x: f64, y: f64) -> usize {
+        let angle = pseudo_angle(x, y) * (ANGLE_STEPS as f64 / 4.0);
         let mut sector = usize::from(self.start_of_angle[(angle as usize).min(ANGLE_STEPS - 1)]);
         // The table gives the sector at the start of the step; the next may begin within it.
         loop {
             let [_, end] = self.sectors[sector].planes;
-            let beyond = distance(end, p.x, p.y) >= 0.0 && end.cos * p.x + end.sin * p.y > 0.0;
+            let beyond = distance(end, x, y) >= 0.0 && end.cos * x + end.sin * y > 0.0;
             if !beyond || sector + 1 == self.sectors.len() {
-                break;
+                return sector;
             }
             sector += 1;
         }
+    }
+
+    /// The cell that holds a point of the unit-circle frame.
+    #[inline]
+    pub(in crate::fiber) fn locate(&self, p: DVec3) -> Cell {
+        let sector = self.sector(p.x, p.y);
         let shift = self.period * floor(p.z * self.inverse_period);
         let step = ((p.z - shift) * self.inverse_period * Z_STEPS as f64) as usize;
         let near = Cell {

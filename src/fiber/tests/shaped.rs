@@ -1,9 +1,11 @@
 //! Medullae in sections that are no ellipse have the section's shape, and no void is nearer to the
 //! cuticle for it.
 
+use super::super::surface::Surface;
 use super::super::{Fiber, Region};
 use super::library::{chords, keeps_its_distance, somewhere};
 use super::structure;
+use super::walk::launch;
 use crate::sampling::Rng;
 use crate::species::{self, Continuity, MedullaKind, Section, Structure};
 use glam::DVec3;
@@ -175,6 +177,91 @@ fn chords_follow_cauchy_in_every_shape() {
             (mean / expected - 1.0).abs() < 0.06,
             "{name}: {mean} {expected}"
         );
+    }
+}
+
+/// Rays that know when they are far from the surface meet what rays do that march all the way.
+#[test]
+fn knowing_the_way_clear_changes_no_hit() {
+    for (name, mut structure) in structures() {
+        // So that pigment tells where rays cross the medulla's outline.
+        structure.medulla.pigment = 0.3;
+        let fiber = Fiber::build(&structure, 7).unwrap();
+        let mut marching = fiber.clone();
+        if let Surface::Scales(scales) = &mut marching.surface {
+            scales.clearance = None;
+        }
+        if let Some(rim) = &mut marching.medulla.rim {
+            rim.march_all_the_way();
+        }
+        let (mut hits, mut leaving) = (0, 0);
+        for path in 0..1000 {
+            let mut rng = Rng::new(9, path);
+            let (mut p, mut dir) = launch(&fiber, &mut rng);
+            let (mut region, mut from) = (Region::Outside, None);
+            for _ in 0..30 {
+                let ask = |fiber: &Fiber| fiber.next_hit(p, dir, region, from);
+                let (Some(hit), Some(other)) = (ask(&fiber), ask(&marching)) else {
+                    assert!(ask(&fiber).is_none() && ask(&marching).is_none(), "{name}");
+                    break;
+                };
+                let near = (hit.t - other.t).abs() < 1e-9 * (1.0 + other.t);
+                let same = hit.to == other.to && hit.state == other.state;
+                assert!(near && same, "{name}: {hit:?}, marching {other:?}");
+                assert!(
+                    (hit.pigment_um - other.pigment_um).abs() < 1e-8 * (1.0 + other.t),
+                    "{name}: {hit:?}, marching {other:?}"
+                );
+                hits += 1;
+                leaving += u32::from(hit.to == Region::Outside);
+                p += hit.t * dir;
+                // Through it, or back from it as often.
+                if rng.uniform() < 0.5 {
+                    dir -= 2.0 * dir.dot(hit.normal) * hit.normal;
+                } else {
+                    region = hit.to;
+                }
+                from = Some(hit.state);
+            }
+        }
+        assert!(hits > 2500 && leaving > 250, "{name}: {hits} {leaving}");
+    }
+}
+
+/// What is said to be clear is, up to the surface.
+#[test]
+fn clearances_are_kept() {
+    for (name, fiber) in fibers() {
+        let Surface::Scales(scales) = &fiber.surface else {
+            panic!("{name} is no ellipse");
+        };
+        let clearance = scales.clearance.as_ref().unwrap();
+        let (mut inside, mut all) = (0, 0);
+        for i in 0..40_000 {
+            let mut rng = Rng::new(10, i);
+            let mut even = |reach: f64| reach * (2.0 * rng.uniform() - 1.0);
+            let [x, y] = [0; 2].map(|_| even(1.2 * scales.rho_max));
+            let (clear, turn) = (clearance.at(x, y), even(TAU));
+            let (sin, cos) = turn.sin_cos();
+            let z = even(fiber.period_um());
+            // Without the clearance itself.
+            let depth = |p: DVec3| {
+                let cell = scales.locate(p);
+                scales.radius(cell, scales.across(cell.sector, p.x, p.y), p.z) - p.x.hypot(p.y)
+            };
+            let start = DVec3::new(x, y, z);
+            let end = depth(start + clear.abs() * DVec3::new(cos, sin, 0.0));
+            assert!(
+                clear == 0.0 || clear.signum() * end > 0.0,
+                "{name} at {start}: {clear}, {end}"
+            );
+            let at_start = depth(start) > 0.0;
+            all += u32::from(at_start);
+            inside += u32::from(clear > 0.0);
+        }
+        // Most of it is far from the surface.
+        let share = f64::from(inside) / f64::from(all);
+        assert!(share > 0.8, "{name}: {share}");
     }
 }
 
