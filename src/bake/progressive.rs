@@ -35,7 +35,7 @@ pub struct Bake<'a> {
     pub(super) cube: Unicube,
     pub(super) norm: Norm,
     pub(super) filter: Option<Reconstruction>,
-    /// What making norm and filter took.
+    /// What making the filter took, or the norm if there is none.
     pub(super) making: Duration,
     pub(super) workers: Option<usize>,
     done: RwLock<Done>,
@@ -124,7 +124,7 @@ impl<'a> Bake<'a> {
             || Norm::new(&cube, plan.folds_maps()),
             || plan.filter(&cube),
         );
-        let making = start.elapsed();
+        let making = (filter.as_ref()).map_or(start.elapsed(), Reconstruction::took);
         Ok(Self {
             nodes: plan.nodes(),
             norm,
