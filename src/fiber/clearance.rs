@@ -1,4 +1,4 @@
-//! How far from a surface a place in a section is at least: what spares rays within waisted fibers most marches.
+//! How far a place in a section is from a surface at least: what spares rays in waisted fibers most marches.
 //!
 //! A ray from void to void in the bulge of a dumb-bell has to ask whether it leaves the fiber, and its medulla, on the way;
 //! an ellipse answers in closed form. Here the way is covered by circles that are known to be clear.
@@ -19,7 +19,7 @@ const BETWEEN: usize = 2;
 /// Circles that a way is covered with, at most: rays that graze are left to the march.
 const MOST_CIRCLES: u32 = 12;
 
-/// Cells within which a ray from the surface has to be clear of it.
+/// Cells within which a ray from the surface has to be clear of it, or it marches all the way.
 const MOST_CELLS: u32 = 8;
 
 /// Above the rounding of single precision.
@@ -78,15 +78,23 @@ impl Clearance {
         f64::from(self.cells[index(y) * SIDE + index(x)])
     }
 
-    /// How far a ray, `from` where it is on that side, is certain to keep to a side of the surface: farther than `to` if all
-    /// that way.
+    /// By how much a ray at `t` is clear on a side; 0 or less if that is not known.
+    #[inline(always)]
+    fn along(&self, ray: &UnitRay, side: Side, t: f64) -> f64 {
+        let clear = self.at(ray.x + t * ray.dx, ray.y + t * ray.dy);
+        match side {
+            Side::Inside => clear,
+            Side::Outside => -clear,
+        }
+    }
+
+    /// How far a ray is certain to keep to the side of the surface that it is on at `from`: farther than `to` if all that way.
     #[inline]
     pub(super) fn until(&self, ray: &UnitRay, side: Side, from: f64, to: f64) -> f64 {
-        let sign = if side == Side::Inside { 1.0 } else { -1.0 };
-        let per_step = sign / ray.a.sqrt();
+        let per_unit = 1.0 / ray.a.sqrt();
         let mut at = from;
         for _ in 0..MOST_CIRCLES {
-            let step = per_step * self.at(ray.x + at * ray.dx, ray.y + at * ray.dy);
+            let step = per_unit * self.along(ray, side, at);
             if step <= 0.0 {
                 break;
             }
@@ -101,11 +109,10 @@ impl Clearance {
     /// Up to where a ray that starts on the surface may meet it again, if it is certain not to from there to `to`.
     #[inline]
     pub(super) fn dive(&self, ray: &UnitRay, side: Side, to: f64) -> Option<f64> {
-        let sign = if side == Side::Inside { 1.0 } else { -1.0 };
         let cell = 1.0 / (self.per_unit * ray.a.sqrt());
         let ways = (1..=MOST_CELLS).map(|k| f64::from(k) * cell);
-        let clear = |&t: &f64| sign * self.at(ray.x + t * ray.dx, ray.y + t * ray.dy) > 0.0;
-        let from = ways.take_while(|&t| t < to).find(clear)?;
+        let is_clear = |&t: &f64| self.along(ray, side, t) > 0.0;
+        let from = ways.take_while(|&t| t < to).find(is_clear)?;
         (self.until(ray, side, from, to) > to).then_some(from)
     }
 }

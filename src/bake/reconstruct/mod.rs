@@ -51,8 +51,8 @@ const CAUTION_AFTER_GUESS: f32 = 2.0;
 /// Scales of a map that is held against a guess: 11 degrees, wider ones are in the guess.
 const SCALES_AFTER_GUESS: usize = 3;
 
-/// The whole of making a filter over the quicker half, for scales or for the lattice: they take the same to a twentieth. More, and one run
-/// in six in which the system holds up one of them ends a fifth too early.
+/// What making a filter takes over the quicker of its two halves, for scales and for the lattice, which are alike to a twentieth. Much
+/// more, and one run in six, in which the system holds up one of them, ends a fifth too early; less than 2.05, and tables come late.
 const HALF: f64 = 2.1;
 
 /// Filters maps of one size.
