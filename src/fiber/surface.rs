@@ -216,14 +216,10 @@ impl Scales {
         core: impl FnOnce(f64, f64) -> Option<T>,
     ) -> Inward<T> {
         let inner = ray.inside_circle(self.rho_min).filter(|&(_, t1)| t1 > 0.0);
-        let leave = || {
-            let outer = ray.inside_circle(self.rho_max);
-            outer.map_or(0.0, |(_, t1)| t1.max(0.0))
-        };
         // In the shell first, unless the ray starts within all scales.
         if ray.c >= self.rho_min * self.rho_min || inner.is_none() {
             let (cell, on) = self.start(ray, 0.0, from, Side::Inside);
-            let limit = inner.map_or_else(leave, |(t0, _)| t0.max(0.0));
+            let limit = inner.map_or_else(|| self.end(ray), |(t0, _)| t0.max(0.0));
             match self.march(ray, 0.0, cell, Side::Inside, on, limit) {
                 March::Through => {}
                 march => return outer_hit(march).map_or(Inward::Lost, Inward::Outer),
@@ -245,7 +241,7 @@ impl Scales {
             cell,
             Side::Inside,
             StartOn::Nothing,
-            leave().max(t1),
+            self.end(ray).max(t1),
         );
         outer_hit(march).map_or(Inward::Lost, Inward::Outer)
     }

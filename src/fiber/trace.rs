@@ -273,7 +273,7 @@ impl Fiber {
                 Some(Element::Rim(state)) => Some(state),
                 _ => None,
             };
-            let (t, state) = rim.leave(&rays.unit, from, f64::INFINITY)?;
+            let (t, state) = rim.leave(&rays.unit, from, rim.end(&rays.unit))?;
             return Some(self.outline_hit(rays, t, Element::Rim(state), Region::Cortex));
         }
         let UnitRay { a, b, c, .. } = rays.unit;

@@ -14,8 +14,7 @@ impl Scales {
         from: Option<OuterState>,
         mut core: impl FnMut(f64, f64) -> Option<(f64, T)>,
     ) -> Inward<(f64, T)> {
-        let outer = ray.inside_circle(self.rho_max);
-        let end = outer.map_or(0.0, |(_, t1)| t1.max(0.0));
+        let end = self.end(ray);
         // What is inside is near, as a rule; a ray along the axis is not followed for all of its way.
         let near = end.min(self.period);
         let first = core(0.0, near);
@@ -36,7 +35,13 @@ impl Scales {
         }
     }
 
-    /// Where a ray inside leaves the fiber up to `limit`.
+    /// Beyond which nothing of the surface is met.
+    pub(super) fn end(&self, ray: &UnitRay) -> f64 {
+        let circle = ray.inside_circle(self.rho_max);
+        circle.map_or(0.0, |(_, t1)| t1.max(0.0))
+    }
+
+    /// Where a ray inside leaves the fiber up to `limit`, which is no farther than its end: a march along a sector needs one.
     pub(super) fn leave_before(
         &self,
         ray: &UnitRay,

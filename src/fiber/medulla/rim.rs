@@ -43,6 +43,11 @@ impl Rim {
         self.scales.contains(unit)
     }
 
+    /// Beyond which a ray does not meet it.
+    pub(in crate::fiber) fn end(&self, ray: &UnitRay) -> f64 {
+        self.scales.end(ray)
+    }
+
     /// Where a ray outside enters it up to `limit`.
     ///
     /// * `from`: what of it the ray starts on.
@@ -56,7 +61,7 @@ impl Rim {
         Some((hit.t, hit.state))
     }
 
-    /// Where a ray inside leaves it up to `limit`.
+    /// Where a ray inside leaves it up to `limit`, no farther than its end.
     pub(in crate::fiber) fn leave(
         &self,
         ray: &UnitRay,
