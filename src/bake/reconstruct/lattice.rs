@@ -16,6 +16,7 @@ use crate::math::frame;
 use crate::math::unicube::Unicube;
 use crate::math::widest;
 use crate::table::Nodes;
+use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -35,8 +36,10 @@ struct Point {
     theta: f32,
     /// `1 / (cos(inclination) points)`.
     weight: f32,
-    /// The cell of its azimuth.
+    /// The first cell of the azimuths that it stands for, and the share of them in the next: strips of a face are not equally
+    /// wide in azimuth, and with whole points to a cell tables ripple by 5 %.
     phi: u32,
+    beyond: f32,
     /// Between the centers of which cell and the next it lies, and how far from the first; even at both ends.
     low: u32,
     high: f32,
@@ -94,16 +97,41 @@ impl Lattice {
             }
         }
         let cells = size[0] as f64 / (2.0 * PI);
+        let azimuth = |w: DVec3| w.y.atan2(w.x).abs() / PI * size[2] as f64;
+        // Azimuths of the strips that points of the four faces round the axis stand for.
+        let (res, steps) = (cube.res(), SIDE * cube.res());
+        let strips = (0..4 * steps).map(|strip| {
+            let (face, step) = (strip / steps, strip % steps);
+            let texel = face * res * res + step / SIDE;
+            let along = |step: usize| step as f64 / SIDE as f64;
+            let [a, b] = [step % SIDE, step % SIDE + 1]
+                .map(|step| azimuth(cube.direction(texel, along(step), 0.5).0));
+            (a.min(b), a.max(b))
+        });
+        let strips: Vec<(f64, f64)> = strips.collect();
         let point = |texel: usize, i: usize| {
             let at = |i: usize| (i as f64 + 0.5) / SIDE as f64;
             let (w, _) = cube.direction(texel, at(i % SIDE), at(i / SIDE));
-            let phi = (w.y.atan2(w.x).abs() / PI * size[2] as f64) as f32;
-            let at = (phi - 0.5).clamp(0.0, (size[2] - 1) as f32);
-            let low = (at as usize).min(size[2] - 2);
+            let phi = azimuth(w);
+            let face = texel / (res * res);
+            // On the faces at the poles points fall on cells without order.
+            let (cell, beyond) = match strips.get(face * steps + texel % res * SIDE + i % SIDE) {
+                Some((from, to)) => (*from, (to - from.floor() - 1.0).max(0.0) / (to - from)),
+                None => (phi, 0.0),
+            };
+            let last = size[2] - 1;
+            let phi = phi as f32;
+            let at = (phi - 0.5).clamp(0.0, last as f32);
+            let low = (at as usize).min(last - 1);
             Point {
                 theta: (frame::theta_of(w) * cells) as f32,
                 weight: (1.0 / w.x.hypot(w.y).max(1e-6) / (SIDE * SIDE) as f64) as f32,
-                phi: (phi as usize).min(size[2] - 1) as u32,
+                phi: (cell as usize).min(last) as u32,
+                beyond: if (cell as usize) < last {
+                    beyond as f32
+                } else {
+                    0.0
+                },
                 low: low as u32,
                 high: at - low as f32,
             }
@@ -178,9 +206,14 @@ impl Lattice {
                 for &(y, share) in self.shares(node, x) {
                     let at = (x * ny + y) * np + point.phi as usize;
                     for k in 0..K {
-                        let cell = &mut into[k][at];
-                        for (cell, part) in cell.iter_mut().zip(parts[k]) {
-                            *cell += share * part;
+                        let mut add = |at: usize, share: f32| {
+                            for (cell, part) in into[k][at].iter_mut().zip(parts[k]) {
+                                *cell += share * part;
+                            }
+                        };
+                        add(at, share - share * point.beyond);
+                        if point.beyond > 0.0 {
+                            add(at + 1, share * point.beyond);
                         }
                     }
                 }
@@ -238,6 +271,33 @@ mod tests {
     use super::*;
     use crate::math::frame;
     use crate::table::Mode;
+
+    /// Light that is the same all round is so on the lattice.
+    #[test]
+    fn azimuths_get_what_is_theirs() {
+        let cube = Unicube::new(64);
+        let nodes = Nodes::new(Mode::Cone, 16);
+        let texels: Vec<[usize; 2]> = (0..cube.texels())
+            .map(|t| [t, cube.mirrored(t)])
+            .filter(|[t, mirror]| t < mirror)
+            .collect();
+        let lattice = Lattice::new(&cube, &nodes, &texels, true);
+        let counts = texels.iter().map(|&[texel, _]| {
+            let (w, _) = cube.direction(texel, 0.5, 0.5);
+            let count = cube.solid_angle(texel) * frame::theta_of(w).cos().powi(2);
+            [[count as f32; 4]]
+        });
+        let mut sums = [Field::new(lattice.size())];
+        lattice.gather(8, counts, &mut sums);
+        let mut by_azimuth = vec![0.0; lattice.size()[2]];
+        for (i, cell) in sums[0].values.iter().enumerate() {
+            by_azimuth[i % lattice.size()[2]] += f64::from(cell[0]);
+        }
+        let mean = by_azimuth.iter().sum::<f64>() / by_azimuth.len() as f64;
+        for (cell, sum) in by_azimuth.iter().enumerate() {
+            assert!((sum / mean - 1.0).abs() < 0.03, "{cell}: {sum} of {mean}");
+        }
+    }
 
     /// A smooth reciprocal S is found again from what it lets photons of all nodes do, and the nodes
     /// see what they did.
