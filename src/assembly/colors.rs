@@ -15,7 +15,7 @@ use crate::progress::{Cancel, Progress, Silent};
 use crate::render::{RenderJob, Sampler};
 use crate::scene::{Backdrop, Environment, Scene, SceneParts, View};
 use crate::skin::Skin;
-use crate::species::{PigmentBand, REFERENCE_RADIUS_UM, Species};
+use crate::species::{Dye, PigmentBand, REFERENCE_RADIUS_UM, Species};
 use crate::table::TableError;
 use glam::Vec3;
 
@@ -104,7 +104,13 @@ pub fn match_colors(
     };
     progress.begin("matching colors", DEPTHS.len() as u64, "absorptions");
     let mut out_of_reach = Vec::new();
+    let mut known: Vec<Dye> = Vec::new();
     for dye in species.dyes_mut() {
+        // All classes and bands of a coat have one color, as a rule.
+        if let Some(same) = known.iter().find(|known| known.color == dye.color) {
+            *dye = *same;
+            continue;
+        }
         let (depths, shown) = probe.depths(dye.color)?;
         // Curves through so few points are 2 % off at worst.
         let seen = probe.look(depths, SAMPLES_AT_LAST)?;
@@ -121,6 +127,7 @@ pub fn match_colors(
                 out_of_reach.push(sentence);
             }
         }
+        known.push(*dye);
     }
     progress.finish();
     Ok(out_of_reach)

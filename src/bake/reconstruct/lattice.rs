@@ -120,18 +120,15 @@ impl Lattice {
                 None => (phi, 0.0),
             };
             let last = size[2] - 1;
+            let cell = (cell as usize).min(last);
             let phi = phi as f32;
             let at = (phi - 0.5).clamp(0.0, last as f32);
             let low = (at as usize).min(last - 1);
             Point {
                 theta: (frame::theta_of(w) * cells) as f32,
                 weight: (1.0 / w.x.hypot(w.y).max(1e-6) / (SIDE * SIDE) as f64) as f32,
-                phi: (cell as usize).min(last) as u32,
-                beyond: if (cell as usize) < last {
-                    beyond as f32
-                } else {
-                    0.0
-                },
+                phi: cell as u32,
+                beyond: if cell < last { beyond as f32 } else { 0.0 },
                 low: low as u32,
                 high: at - low as f32,
             }
@@ -272,16 +269,21 @@ mod tests {
     use crate::math::frame;
     use crate::table::Mode;
 
+    /// The lattice of maps averaged with their mirror images, and the texels of their cells.
+    fn folded(cube: &Unicube, nodes: &Nodes) -> (Lattice, Vec<[usize; 2]>) {
+        let texels: Vec<[usize; 2]> = (0..cube.texels())
+            .map(|t| [t, cube.mirrored(t)])
+            .filter(|[t, mirror]| t < mirror)
+            .collect();
+        (Lattice::new(cube, nodes, &texels, true), texels)
+    }
+
     /// Light that is the same all round is so on the lattice.
     #[test]
     fn azimuths_get_what_is_theirs() {
         let cube = Unicube::new(64);
         let nodes = Nodes::new(Mode::Cone, 16);
-        let texels: Vec<[usize; 2]> = (0..cube.texels())
-            .map(|t| [t, cube.mirrored(t)])
-            .filter(|[t, mirror]| t < mirror)
-            .collect();
-        let lattice = Lattice::new(&cube, &nodes, &texels, true);
+        let (lattice, texels) = folded(&cube, &nodes);
         let counts = texels.iter().map(|&[texel, _]| {
             let (w, _) = cube.direction(texel, 0.5, 0.5);
             let count = cube.solid_angle(texel) * frame::theta_of(w).cos().powi(2);
@@ -305,11 +307,7 @@ mod tests {
     fn counts_of_s_give_s_and_s_gives_densities() {
         let cube = Unicube::new(32);
         let nodes = Nodes::new(Mode::Cone, 16);
-        let texels: Vec<[usize; 2]> = (0..cube.texels())
-            .map(|t| [t, cube.mirrored(t)])
-            .filter(|[t, mirror]| t < mirror)
-            .collect();
-        let lattice = Lattice::new(&cube, &nodes, &texels, true);
+        let (lattice, texels) = folded(&cube, &nodes);
         let s_of = |q: f64, o: f64, phi: f64| {
             let along = 0.5 * (q - o);
             0.1 + (-6.0 * (q + o).powi(2)).exp() * (1.5 + phi.cos()) * (0.5 + 2.0 * along * along)
