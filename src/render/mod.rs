@@ -10,6 +10,7 @@ mod rendering;
 mod resample;
 mod scatter;
 mod sums;
+mod sums_file;
 mod worth;
 
 pub use film::{Crop, Film, NO_STRAND, Pixel, Report};

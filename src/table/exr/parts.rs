@@ -25,7 +25,7 @@ pub(super) struct Part<'a> {
 /// Writes a file that holds `parts`.
 ///
 /// ZIP where it gains something. Maps of smooth densities are 32 bits of mantissa noise each: it would
-/// take 2 % off their size and most of the time that a first table takes. Maps with holes shrink.
+/// take 2 % off their size and most of the time that a first table takes. Maps of holes shrink to a fraction.
 pub(super) fn write(parts: Vec<Part<'_>>, path: &Path) -> Result<(), TableError> {
     if !is_smooth(&parts) {
         let bytes = raw::encode(owned(parts), Compression::ZIP16, path)?;
@@ -64,7 +64,7 @@ fn is_smooth(parts: &[Part<'_>]) -> bool {
         counts.fold([0; 2], |[a, b], [c, d]| [a + c, b + d])
     });
     let [zeros, all] = counts.reduce(|| [0; 2], |[a, b], [c, d]| [a + c, b + d]);
-    4 * zeros < all
+    2 * zeros < all
 }
 
 fn owned(parts: Vec<Part<'_>>) -> Vec<RawPart> {
