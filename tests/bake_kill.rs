@@ -125,6 +125,24 @@ fn wait_for(path: &Path) {
 }
 
 #[cfg(unix)]
+fn send(signal: &str, child: &Child) {
+    let pid = child.id().to_string();
+    let sent = Command::new("kill").args(["-s", signal, &pid]).status();
+    assert!(sent.unwrap().success());
+}
+
+/// A folder in the place of a file, whoever writes that file.
+#[cfg(unix)]
+fn block(path: &Path) {
+    loop {
+        let _ = std::fs::remove_file(path);
+        if std::fs::create_dir(path).is_ok() {
+            return;
+        }
+    }
+}
+
+#[cfg(unix)]
 #[test]
 fn a_signal_keeps_the_work_and_the_same_command_goes_on() {
     let desk = Desk::new();
@@ -146,9 +164,7 @@ fn a_signal_keeps_the_work_and_the_same_command_goes_on() {
         while name().is_none() {
             std::thread::sleep(Duration::from_millis(2));
         }
-        let pid = child.id().to_string();
-        let sent = Command::new("kill").args(["-s", signal, &pid]).status();
-        assert!(sent.unwrap().success());
+        send(signal, &child);
         let status = child.wait().unwrap();
         assert_eq!(status.code(), Some(code));
         // The table of what was done, stated as such, and the sums to go on from.
@@ -159,6 +175,39 @@ fn a_signal_keeps_the_work_and_the_same_command_goes_on() {
         assert!(desk.read("out.exr") == desk.read("whole.exr"));
         desk.run("cache clear");
     }
+}
+
+/// The checkpoint cannot be written for a while, and the output in the end.
+#[cfg(unix)]
+#[test]
+fn what_cannot_be_written_is_kept_and_said() {
+    let desk = Desk::new();
+    let bake = "bake glass-cylinder --face 16 --bins 4 --threads 1 --no-cache -o out.exr";
+    let run = format!("{bake} --photons 1e11 --checkpoint-every 10ms --preview-every 10ms");
+    let child = desk.command(&run).stderr(Stdio::piped()).spawn().unwrap();
+    wait_for(&desk.at("out.exr"));
+    let checkpoint = desk.at("out.exr.checkpoint");
+    block(&checkpoint);
+    // Some passes of a second at most.
+    std::thread::sleep(Duration::from_millis(2500));
+    std::fs::remove_dir(&checkpoint).unwrap();
+    wait_for(&checkpoint);
+    block(&desk.at("out.exr"));
+    send("INT", &child);
+    let output = child.wait_with_output().unwrap();
+    let text = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{text}");
+    assert_eq!(text.matches("no checkpoint for now").count(), 1, "{text}");
+    assert!(text.contains("out.exr: it is a folder"), "{text}");
+    let kept = text.split("checkpoint keeps the ").nth(1).expect(&text);
+    let photons = kept.split(' ').next().unwrap();
+    std::fs::remove_dir(desk.at("out.exr")).unwrap();
+    let again = desk.run(&format!("{bake} --photons {photons}"));
+    let going_on = format!("going on from {photons} photons");
+    assert!(again.contains(&going_on), "{again}");
+    let resumed = desk.read("out.exr");
+    desk.run(&format!("{bake} --photons {photons} --restart"));
+    assert!(resumed == desk.read("out.exr"));
 }
 
 #[test]

@@ -119,6 +119,15 @@ fn a_checkpoint_of_something_else_is_left_alone() {
     }
     run(desk.path(), &line);
     assert!(!state.exists());
+    // The same name, another environment in it.
+    let env = desk.path().join("env.exr");
+    let paint = |gray: f32| exr::prelude::write_rgb_file(&env, 16, 8, |_, _| (gray, gray, gray));
+    paint(1.0).unwrap();
+    let line = format!("{line} --env env.exr");
+    run(desk.path(), &format!("{line} -o part.safetensors"));
+    std::fs::rename(desk.path().join("part.safetensors"), &state).unwrap();
+    paint(0.5).unwrap();
+    assert!(refused(&line).contains("the scene"));
 }
 
 /// Where the checkpoint cannot be, the picture is not begun.

@@ -8,11 +8,9 @@ mod plain;
 mod task;
 
 pub(crate) use plain::Plain;
-#[cfg(all(test, target_arch = "x86_64"))]
-pub(crate) use task::on_avx2;
 pub(crate) use task::{Task, on_this_processor};
-#[cfg(target_arch = "x86_64")]
-pub(crate) use {avx2::Avx2, avx512::Avx512};
+#[cfg(all(test, target_arch = "x86_64"))]
+pub(crate) use task::{on_avx2, on_avx512};
 
 use glam::Vec4;
 
@@ -221,27 +219,6 @@ pub(crate) fn room_for<const N: usize>(all: &mut [Aside], from: usize) -> &mut [
     all[from..]
         .first_chunk_mut()
         .expect("room for a row beyond the last")
-}
-
-/// Whether the processor has what [`Avx2`] needs, and BMI1, POPCNT and LZCNT.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-pub(crate) fn has_avx2() -> bool {
-    is_x86_feature_detected!("avx2")
-        && is_x86_feature_detected!("fma")
-        && is_x86_feature_detected!("bmi1")
-        && is_x86_feature_detected!("popcnt")
-        && is_x86_feature_detected!("lzcnt")
-}
-
-/// Whether it has what [`Avx512`] needs besides.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-pub(crate) fn has_avx512() -> bool {
-    is_x86_feature_detected!("avx512f")
-        && is_x86_feature_detected!("avx512bw")
-        && is_x86_feature_detected!("avx512dq")
-        && is_x86_feature_detected!("avx512vl")
 }
 
 #[inline(always)]

@@ -13,6 +13,8 @@ pub struct Checkpoint {
     path: PathBuf,
     every: Duration,
     last: Instant,
+    /// Photons whose sums the file has, as far as is known.
+    holds: Option<u64>,
     in_cache: bool,
     /// Whether the sums stay when the bake is done: then more photons continue from there.
     keep: bool,
@@ -45,6 +47,7 @@ impl Checkpoint {
             path: cache.sums_path(&bake.name()),
             every,
             last: Instant::now(),
+            holds: None,
             in_cache: true,
             keep,
         }
@@ -59,6 +62,7 @@ impl Checkpoint {
             path: path.into(),
             every,
             last: Instant::now(),
+            holds: None,
             in_cache: false,
             keep: false,
         }
@@ -78,6 +82,7 @@ impl Checkpoint {
             Ok(()) => {
                 // Someone may have meant to keep them.
                 self.keep |= self.in_cache;
+                self.holds = Some(bake.photons());
                 Ok(Found::Photons(bake.photons()))
             }
             Err(SumsError::File(FileError { source, .. }))
@@ -91,13 +96,28 @@ impl Checkpoint {
         }
     }
 
-    fn save(&mut self, bake: &Bake<'_>) -> Result<(), SumsError> {
+    /// Whether the file has the sums of all that is done so far.
+    pub fn holds(&self, bake: &Bake<'_>) -> bool {
+        self.holds == Some(bake.photons())
+    }
+
+    /// Writes the sums of what is done so far, if the file does not have them.
+    ///
+    /// # Errors
+    /// A file that cannot be written. It then is as it was.
+    pub fn save(&mut self, bake: &Bake<'_>) -> Result<(), SumsError> {
         self.last = Instant::now();
+        if self.holds(bake) {
+            return Ok(());
+        }
         if let Some(folder) = self.path.parent() {
             // If it cannot be made, writing into it fails with the path and the reason.
             let _ = std::fs::create_dir_all(folder);
         }
-        bake.save(&self.path)
+        let photons = bake.photons();
+        bake.save(&self.path)?;
+        self.holds = Some(photons);
+        Ok(())
     }
 
     fn is_due(&self) -> bool {
@@ -120,8 +140,8 @@ impl Checkpoint {
 
 /// [`Bake::run`] with checkpoints, one of them when it is cancelled.
 ///
-/// * `between`: called after every pass. The first checkpoint that cannot be written is reported to
-///   it; the bake goes on without more of them.
+/// * `between`: called after every pass. A checkpoint that cannot be written is reported to it, but not
+///   again until one was; the bake goes on and tries again when the next is due.
 pub fn drive(
     bake: &Bake<'_>,
     goal: &Goal,
@@ -130,19 +150,23 @@ pub fn drive(
     cancel: &Cancel,
     between: &mut dyn FnMut(&Bake<'_>, Option<SumsError>),
 ) -> Ended {
+    let mut failing = false;
     bake.begin(progress);
     let ended = loop {
         let ended = bake.refine(goal, progress, cancel);
         let due = |c: &Checkpoint| match ended {
             None => c.is_due(),
-            // Saved sums that nothing has been added to need no saving.
             Some(ended) => ended == Ended::Cancelled && bake.photons() > 0,
         };
         let saved = checkpoint.as_mut().filter(|c| due(c)).map(|c| c.save(bake));
-        let failed = saved.and_then(Result::err);
-        if failed.is_some() {
-            checkpoint = None;
-        }
+        let failed = match saved {
+            Some(Err(error)) => (!std::mem::replace(&mut failing, true)).then_some(error),
+            Some(Ok(())) => {
+                failing = false;
+                None
+            }
+            None => None,
+        };
         between(bake, failed);
         if let Some(ended) = ended {
             break ended;

@@ -1,10 +1,10 @@
 //! The only creator of output files. A file appears under its name complete, or not at all:
 //! sibling temporary, sync, rename. Temporaries of writers that were killed go with the next file
-//! that is written beside them.
+//! that is written beside them. Where the name is a link, what it points to is replaced.
 
 use super::stale;
 use crate::blame::Blame;
-use std::fs::File;
+use std::fs::{File, Metadata, Permissions};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
@@ -44,26 +44,45 @@ impl FileError {
 /// previous file of that name untouched.
 #[derive(Debug)]
 pub struct AtomicFile {
+    /// As the user gave it.
     path: PathBuf,
+    /// Where the file comes to lie.
+    target: PathBuf,
+    /// Permissions of the file that it takes the place of.
+    kept: Option<Permissions>,
     file: BufWriter<NamedTempFile>,
 }
 
 impl AtomicFile {
-    /// Opens a temporary sibling of `path`.
+    /// Opens a temporary sibling of `path`, or of what it links to.
+    ///
+    /// # Errors
+    /// Nothing can be written there, or what is there is no regular file: a folder, a device, a pipe.
     pub fn create(path: &Path) -> Result<Self, FileError> {
-        if path.is_dir() {
-            let reason = io::Error::new(io::ErrorKind::IsADirectory, "it is a folder");
+        let fail = |e| FileError::new("create", path, e);
+        let target = behind_links(path).map_err(fail)?;
+        let old = std::fs::metadata(&target).ok();
+        if let Some(kind) = old.as_ref().map(Metadata::file_type)
+            && !kind.is_file()
+        {
+            let reason = match kind.is_dir() {
+                true => io::Error::new(io::ErrorKind::IsADirectory, "it is a folder"),
+                false => io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"),
+            };
             return Err(FileError::new("write", path, reason));
         }
-        stale::sweep(folder_of(path));
-        let temp = tempfile::Builder::new()
-            .prefix(stale::PREFIX)
-            .suffix(stale::SUFFIX)
-            .tempfile_in(folder_of(path))
-            .map_err(|e| FileError::new("create", path, e))?;
+        let folder = folder_of(&target);
+        stale::sweep(folder);
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(stale::PREFIX).suffix(stale::SUFFIX);
+        #[cfg(unix)]
+        builder.permissions(new_file());
+        let temp = builder.tempfile_in(folder).map_err(fail)?;
         stale::claim(temp.as_file());
         Ok(Self {
             path: path.to_owned(),
+            target,
+            kept: old.map(|old| old.permissions()),
             file: BufWriter::with_capacity(1 << 16, temp),
         })
     }
@@ -73,11 +92,13 @@ impl AtomicFile {
         let path = self.path;
         let fail = |e| FileError::new("write", &path, e);
         let temp = self.file.into_inner().map_err(|e| fail(e.into_error()))?;
+        if let Some(kept) = self.kept {
+            temp.as_file().set_permissions(kept).map_err(fail)?;
+        }
         temp.as_file().sync_all().map_err(fail)?;
-        set_default_mode(temp.as_file()).map_err(fail)?;
-        temp.persist(&path).map_err(|e| fail(e.error))?;
+        temp.persist(&self.target).map_err(|e| fail(e.error))?;
         // The rename itself must survive a power cut; not every system can sync a folder.
-        if let Ok(folder) = File::open(folder_of(&path)) {
+        if let Ok(folder) = File::open(folder_of(&self.target)) {
             let _ = folder.sync_all();
         }
         Ok(())
@@ -115,16 +136,25 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Temporary files are private (0600); an output should have the usual permissions.
-#[cfg(unix)]
-fn set_default_mode(file: &File) -> io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    file.set_permissions(std::fs::Permissions::from_mode(0o644))
+/// Where a file of that name would be written to: links are followed, also to what is not there yet.
+fn behind_links(path: &Path) -> io::Result<PathBuf> {
+    /// As many as Linux follows.
+    const MOST: usize = 40;
+    let mut target = path.to_owned();
+    for _ in 0..MOST {
+        match std::fs::read_link(&target) {
+            Ok(to) => target = folder_of(&target).join(to),
+            Err(_) => return Ok(target),
+        }
+    }
+    Err(io::Error::other("it is a link that leads to itself"))
 }
 
-#[cfg(not(unix))]
-fn set_default_mode(_: &File) -> io::Result<()> {
-    Ok(())
+/// Temporary files are private; what becomes an output has the permissions of any new file, less the umask.
+#[cfg(unix)]
+fn new_file() -> Permissions {
+    use std::os::unix::fs::PermissionsExt;
+    Permissions::from_mode(0o666)
 }
 
 /// Fails now rather than after an hour of work if `path` cannot be written later.
@@ -159,6 +189,38 @@ mod tests {
         drop(file);
         assert_eq!(std::fs::read(&path).unwrap(), b"old");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_and_permissions_stay_as_they_are() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let mode = |path: &Path| std::fs::metadata(path).unwrap().permissions().mode() & 0o777;
+        // As the system makes new files, whatever the umask.
+        std::fs::write(at("plain"), b"").unwrap();
+        AtomicFile::write_all_to(&at("new"), b"new").unwrap();
+        assert_eq!(mode(&at("new")), mode(&at("plain")));
+        std::fs::write(at("private"), b"old").unwrap();
+        std::fs::set_permissions(at("private"), Permissions::from_mode(0o600)).unwrap();
+        symlink("private", at("link")).unwrap();
+        AtomicFile::write_all_to(&at("link"), b"new").unwrap();
+        assert_eq!(std::fs::read(at("private")).unwrap(), b"new");
+        assert_eq!(mode(&at("private")), 0o600);
+        assert!(at("link").is_symlink());
+        std::fs::create_dir(at("elsewhere")).unwrap();
+        symlink("elsewhere/later", at("dangling")).unwrap();
+        AtomicFile::write_all_to(&at("dangling"), b"new").unwrap();
+        assert_eq!(std::fs::read(at("elsewhere/later")).unwrap(), b"new");
+        symlink("round", at("round")).unwrap();
+        for (name, reason) in [("round", "leads to itself"), ("device", "no regular file")] {
+            if name == "device" {
+                symlink("/dev/null", at(name)).unwrap();
+            }
+            let error = check_writable(&at(name)).unwrap_err();
+            assert!(error.to_string().contains(reason), "{error}");
+        }
     }
 
     #[test]

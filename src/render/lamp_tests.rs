@@ -168,7 +168,11 @@ fn the_floor_joins_the_backdrop_under_lamps() {
         ),
         lamp(LampShape::Sun { diameter_deg: 30.0 }, 120.0, 70.0),
     ];
-    let s = scene(&groom, 0.1, &lamps, Some(0.4), view);
+    let yellow = lamps.map(|lamp| Lamp {
+        strength: Rgb::new(1.0, 1.0, 0.0),
+        ..lamp
+    });
+    let s = scene(&groom, 0.1, &yellow, Some(0.4), view);
     let film = render(&s, 32, 64, Sampler::Qsir);
     let far = |i: usize| i / 32 >= 26 && !(6..26).contains(&(i % 32));
     let corner: Vec<f32> = (0..32 * 32)
@@ -177,9 +181,11 @@ fn the_floor_joins_the_backdrop_under_lamps() {
         .collect();
     let mean = corner.iter().sum::<f32>() / corner.len() as f32;
     assert!((mean - 0.395).abs() < 0.007, "{mean}");
-    let floor = film.pixels.iter().filter(|p| p.alpha == 0.0);
-    let shadow = floor.map(|p| p.radiance.x).fold(1.0, f32::min);
+    let floor = || film.pixels.iter().filter(|p| p.alpha == 0.0);
+    let shadow = floor().map(|p| p.radiance.x).fold(1.0, f32::min);
     assert!(shadow < 0.36, "{shadow}");
+    // Nothing shines blue, so nothing blue is taken away.
+    assert!(floor().all(|p| (p.radiance.z - 0.4).abs() < 1e-5));
 }
 
 /// Rays toward light are sent by chance. Where all but a few are left out the mean is still that of

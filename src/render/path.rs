@@ -152,10 +152,11 @@ impl Integrator<'_> {
             let share = ground.shadow_share(ray.origin + *t * ray.dir);
             out.radiance = backdrop();
             if share > 0.0 {
-                // Times the share of its light that the subject leaves to the floor.
+                // Times the share of its light that the subject leaves to the floor; of colors that
+                // nothing shines in there is nothing to take.
                 let open = self.scene.open_floor(ground, scatter.position());
                 let light = self.trace(scatter, Some(ground), &draws, &mut out);
-                let left = light / open.max(Rgb::splat(f32::MIN_POSITIVE));
+                let left = Rgb::select(open.cmpgt(Rgb::ZERO), light / open, Rgb::ONE);
                 out.radiance *= Rgb::ONE.lerp(left, share);
             }
             return out;

@@ -1,12 +1,9 @@
 //! For processors with AVX-512 (F, BW, DQ and VL) besides AVX2 and FMA. To be used within functions that enable them only,
-//! without closures between, which would not be compiled for them.
-#![allow(
-    unsafe_code,
-    reason = "measured faster; whoever calls has asked the processor whether it has all of it, and the pointers are of \
-              arrays as long as what is read or written"
-)]
+//! without closures between, which would not be compiled for them. What is unsafe is so for the reasons of [`super::avx2`], and
+//! as sound.
+#![allow(unsafe_code, reason = "measured faster")]
 
-use super::avx2::{Avx2, lesser, numbers, turn};
+use super::avx2::{Avx2, Eight, lesser, numbers, turn};
 use super::{Aside, CHILDREN, Children, Lanes, Numbers, Siblings, Way, line_up};
 use glam::Vec4;
 use std::arch::x86_64::*;
@@ -14,26 +11,34 @@ use std::arch::x86_64::*;
 /// See the file.
 pub(crate) struct Avx512;
 
+/// Sixteen numbers.
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub(crate) struct Sixteen(__m512);
+
 numbers! {
-    __m512, 16, _mm512_set1_ps, _mm512_fmadd_ps;
+    Sixteen, 16, _mm512_set1_ps, _mm512_fmadd_ps;
     add _mm512_add_ps, sub _mm512_sub_ps, mul _mm512_mul_ps, div _mm512_div_ps, min _mm512_min_ps, max _mm512_max_ps;
     |a, b| u32::from(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b))
 }
 
 impl Lanes for Avx512 {
-    type Eight = __m256;
-    type Sixteen = __m512;
+    type Eight = Eight;
+    type Sixteen = Sixteen;
 
     #[inline(always)]
     fn bytes(x: &[u8; CHILDREN]) -> Self::Sixteen {
-        unsafe { _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128(x.as_ptr().cast()))) }
+        unsafe {
+            let x = _mm_loadu_si128(x.as_ptr().cast());
+            Sixteen(_mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(x)))
+        }
     }
 
     #[inline(always)]
     fn words(x: &[u16; 16]) -> Self::Sixteen {
         unsafe {
             let x = _mm256_loadu_si256(x.as_ptr().cast());
-            _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(x))
+            Sixteen(_mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(x)))
         }
     }
 
@@ -64,20 +69,21 @@ impl Lanes for Avx512 {
 
     #[inline(always)]
     fn head(x: Self::Sixteen) -> Self::Eight {
-        unsafe { _mm512_castps512_ps256(x) }
+        unsafe { Eight(_mm512_castps512_ps256(x.0)) }
     }
 
     #[inline(always)]
     fn middle(x: Self::Sixteen) -> Self::Eight {
         unsafe {
-            let x = _mm512_castps_si512(x);
-            _mm256_castsi256_ps(_mm512_castsi512_si256(_mm512_alignr_epi32::<4>(x, x)))
+            let x = _mm512_castps_si512(x.0);
+            let x = _mm512_castsi512_si256(_mm512_alignr_epi32::<4>(x, x));
+            Eight(_mm256_castsi256_ps(x))
         }
     }
 
     #[inline(always)]
     fn tail(x: Self::Sixteen) -> Self::Eight {
-        unsafe { _mm512_extractf32x8_ps::<1>(x) }
+        unsafe { Eight(_mm512_extractf32x8_ps::<1>(x.0)) }
     }
 
     #[inline(always)]
@@ -88,7 +94,7 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn sixteen(x: Self::Sixteen) -> [f32; CHILDREN] {
         let mut all = [0.0; CHILDREN];
-        unsafe { _mm512_storeu_ps(all.as_mut_ptr(), x) };
+        unsafe { _mm512_storeu_ps(all.as_mut_ptr(), x.0) };
         all
     }
 
@@ -101,7 +107,7 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn line_up(
         chosen: u16,
-        begins: __m512,
+        begins: Sixteen,
         children: Children<'_>,
         row: &mut [Aside; CHILDREN],
     ) -> usize {
@@ -121,7 +127,7 @@ impl Lanes for Avx512 {
 /// More than four, one of thirty times.
 #[inline(never)]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,popcnt,lzcnt")]
-fn line_up_many(chosen: u16, begins: __m512, children: Children<'_>, row: &mut [Aside; CHILDREN]) {
+fn line_up_many(chosen: u16, begins: Sixteen, children: Children<'_>, row: &mut [Aside; CHILDREN]) {
     if chosen.count_ones() > 8 {
         line_up(chosen, &Avx512::sixteen(begins), children, row);
     } else {
@@ -132,11 +138,11 @@ fn line_up_many(chosen: u16, begins: __m512, children: Children<'_>, row: &mut [
 
 /// The chosen among children, at most eight, in their order; then zeros, which are the nearest of all.
 #[inline(always)]
-fn gather(chosen: u16, begins: __m512, children: Children<'_>) -> __m512i {
+fn gather(chosen: u16, begins: Sixteen, children: Children<'_>) -> __m512i {
     unsafe {
         let places = _mm512_cvtepu8_epi32(_mm_loadu_si128(children.places.as_ptr().cast()));
         let numbers = _mm512_add_epi32(places, _mm512_set1_epi32(children.first as i32));
-        let begins = _mm512_maskz_compress_epi32(chosen, _mm512_castps_si512(begins));
+        let begins = _mm512_maskz_compress_epi32(chosen, _mm512_castps_si512(begins.0));
         let numbers = _mm512_maskz_compress_epi32(chosen, numbers);
         let begins = _mm512_cvtepu32_epi64(_mm512_castsi512_si256(begins));
         let numbers = _mm512_cvtepu32_epi64(_mm512_castsi512_si256(numbers));
@@ -198,14 +204,27 @@ const fn partners<const N: usize>(far: usize) -> [u64; N] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Task, on_avx512};
     use super::*;
     use crate::sampling::Rng;
 
+    /// A row of sixteen.
+    struct Row<'a>(u16, &'a [f32; CHILDREN], Children<'a>);
+
+    impl Task for Row<'_> {
+        type Output = Vec<Aside>;
+
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Vec<Aside> {
+            let mut row = [Aside::NONE; CHILDREN];
+            let whole = self.1.map(|begin| begin as u16);
+            let count = L::line_up(self.0, L::words(&whole), self.2, &mut row);
+            row[..count].to_vec()
+        }
+    }
+
     #[test]
     fn children_are_in_order_whatever_their_number() {
-        if !is_x86_feature_detected!("avx512f") || !is_x86_feature_detected!("avx512vl") {
-            return;
-        }
         let places = std::array::from_fn(|k| k as u8);
         let children = Children {
             first: 70,
@@ -217,24 +236,13 @@ mod tests {
             let begins = std::array::from_fn(|_| (rng.bits() % (3 + i % 40)) as f32);
             let (some, most) = (rng.bits() & rng.bits(), rng.bits() | rng.bits());
             let chosen = [some, most][usize::from(i % 9 == 0)] as u16;
-            let [mut quick, mut plain] = [[Aside::NONE; CHILDREN]; 2];
+            let Some(quick) = on_avx512(Row(chosen, &begins, children)) else {
+                println!("not on this processor");
+                return;
+            };
+            let mut plain = [Aside::NONE; CHILDREN];
             let count = line_up(chosen, &begins, children, &mut plain);
-            // SAFETY: the processor was asked.
-            let quick_count = unsafe { on_this_processor(chosen, &begins, children, &mut quick) };
-            assert_eq!(count, quick_count);
-            assert_eq!(quick[..count], plain[..count]);
+            assert_eq!(quick, plain[..count]);
         }
-    }
-
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-    fn on_this_processor(
-        chosen: u16,
-        begins: &[f32; CHILDREN],
-        children: Children<'_>,
-        row: &mut [Aside; CHILDREN],
-    ) -> usize {
-        // SAFETY: sixteen numbers are read of sixteen.
-        let begins = unsafe { _mm512_loadu_ps(begins.as_ptr()) };
-        Avx512::line_up(chosen, begins, children, row)
     }
 }

@@ -196,7 +196,7 @@ impl Job<'_> {
         let mut last_preview = None::<Instant>;
         let mut between = |bake: &Bake<'_>, failed: Option<SumsError>| {
             if let Some(error) = failed {
-                console.say(format!("warning: no checkpoints: {error}"));
+                console.say(format!("warning: no checkpoint for now: {error}"));
             }
             let Some(every) = self.args.preview_every else {
                 return;
@@ -232,41 +232,51 @@ impl Job<'_> {
     ) -> Result<(), Failure> {
         let (args, console) = (self.args, self.console);
         let output = args.output.display();
-        if ended == Ended::Cancelled && (args.shard.is_some() || bake.photons() == 0) {
-            let kept = match bake.photons() {
+        let photons = bake.photons();
+        if ended == Ended::Cancelled && (args.shard.is_some() || photons == 0) {
+            let path = checkpoint.path().display();
+            let kept = match photons {
                 0 => "stopped before there was anything to keep".to_owned(),
-                _ => format!(
-                    "stopped; {} keeps {} photons for the same command to go on from",
-                    checkpoint.path().display(),
-                    bake.photons()
+                _ if checkpoint.holds(bake) => format!(
+                    "stopped; {path} keeps {photons} photons for the same command to go on from"
                 ),
+                _ => format!("stopped; {photons} photons are lost: {path} cannot be written"),
             };
             return Err(Failure::new(Blame::Interrupted, kept));
         }
-        if args.shard.is_some() {
-            bake.save(&args.output)?;
-        } else {
-            let table = bake.snapshot()?;
-            // The error is estimated while the table is written: a disk is waited for, not computed for.
-            let (error, written) = rayon::join(
-                || bake.error(),
-                || write_table(&table, self.dye, &args.output),
-            );
-            written?;
-            report(table.tables(), console);
-            self.say_error(error, bake.photons(), ended);
-            if let (true, Some(cache)) = (ended != Ended::Cancelled, &self.cache) {
-                store(&table, cache, console);
-            }
-        }
+        self.write(bake, ended)
+            .map_err(|failure| secure(failure, bake, checkpoint))?;
         if ended == Ended::Cancelled {
-            let kept = format!(
-                "stopped; {output} holds the photons done so far, and the same command goes on from there"
-            );
+            let kept = match checkpoint.holds(bake) {
+                true => "holds the photons done so far, and the same command goes on from there",
+                false => "is the table of the photons done so far; their sums are lost",
+            };
+            let kept = format!("stopped; {output} {kept}");
             return Err(Failure::new(Blame::Interrupted, kept));
         }
         if let Err(error) = checkpoint.finish(bake) {
             console.say(format!("warning: {error}"));
+        }
+        Ok(())
+    }
+
+    /// Writes sums or a table, and says how good it is.
+    fn write(&self, bake: &Bake<'_>, ended: Ended) -> Result<(), Failure> {
+        let (args, console) = (self.args, self.console);
+        if args.shard.is_some() {
+            return Ok(bake.save(&args.output)?);
+        }
+        let table = bake.snapshot()?;
+        // The error is estimated while the table is written: a disk is waited for, not computed for.
+        let (error, written) = rayon::join(
+            || bake.error(),
+            || write_table(&table, self.dye, &args.output),
+        );
+        written?;
+        report(table.tables(), console);
+        self.say_error(error, bake.photons(), ended);
+        if let (true, Some(cache)) = (ended != Ended::Cancelled, &self.cache) {
+            store(&table, cache, console);
         }
         Ok(())
     }
@@ -281,6 +291,19 @@ impl Job<'_> {
             ),
         });
     }
+}
+
+/// Keeps the photons of a bake whose output cannot be written.
+fn secure(failure: Failure, bake: &Bake<'_>, checkpoint: &mut Checkpoint) -> Failure {
+    let photons = bake.photons();
+    let help = match checkpoint.save(bake) {
+        Ok(()) => format!(
+            "{} keeps the {photons} photons: once the output can be written the same command goes on from there",
+            checkpoint.path().display()
+        ),
+        Err(error) => format!("the {photons} photons are lost: {error}"),
+    };
+    Failure::with_help(failure.blame, failure.report, help)
 }
 
 /// A cache that cannot be written to costs the next bake its time.

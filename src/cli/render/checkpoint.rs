@@ -11,14 +11,14 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Renders to the end, or as far as it goes before something stops it, from the checkpoint on if there is
-/// one; shows it meanwhile where somebody looks.
-pub(super) fn run(
-    args: &Args,
+/// one; shows it meanwhile where somebody looks. The checkpoint if it has all samples.
+pub(super) fn run<'a>(
+    args: &'a Args,
     rendering: &mut Rendering<'_>,
     mut live: Option<Live>,
     origin: &Origin,
     console: &Console,
-) -> Result<(), Failure> {
+) -> Result<Option<&'a Path>, Failure> {
     let cancel = console.cancel();
     let of = origin.text();
     if let Some(path) = args.checkpoint.as_ref().filter(|path| path.exists()) {
@@ -34,23 +34,29 @@ pub(super) fn run(
         .map(|_| Chore::every(args.checkpoint_every));
     let mut shows = live.as_ref().map(|_| Chore::every(LOOK));
     let mut is_over = false;
+    let mut kept = None;
+    let mut failing = false;
     while !is_over {
         let due = [&saves, &shows].into_iter().flatten().map(|c| c.due).min();
         let complete = rendering.run(due, console, cancel);
         is_over = complete || cancel.is_cancelled() || rendering.is_late();
         if let (Some(chore), Some(path)) = (&mut saves, &args.checkpoint) {
             let saved = chore.run(is_over, || rendering.sums(&of).write(path));
-            if let Some(Err(error)) = saved {
-                // A picture is worth more than its checkpoint: it goes on without.
-                console.say(format!("warning: no more checkpoints: {error}"));
-                saves = None;
+            kept = matches!(saved, Some(Ok(()))).then_some(path.as_path());
+            // A picture is worth more than its checkpoint: it goes on, and tries again when the next is due.
+            match saved {
+                Some(Err(error)) if !std::mem::replace(&mut failing, true) => {
+                    console.say(format!("warning: no checkpoint for now: {error}"));
+                }
+                Some(Ok(())) => failing = false,
+                _ => {}
             }
         }
         if let (Some(chore), Some(live)) = (&mut shows, &mut live) {
             chore.run(is_over, || live.show(&rendering.film(), console));
         }
     }
-    Ok(())
+    Ok(kept)
 }
 
 /// Time between two looks at a picture that is being made.

@@ -3,6 +3,7 @@
 mod args;
 mod checkpoint;
 mod filled;
+mod identity;
 mod live;
 mod material;
 pub(super) mod output;
@@ -14,8 +15,7 @@ pub(super) use args::Args;
 use super::{Console, Failure};
 use crate::blame::Blame;
 use crate::export::mitsuba::MitsubaScene;
-use crate::groom::{self, Groom, GroomSettings};
-use crate::hex::hex;
+use crate::groom::{self, GroomSettings};
 use crate::io::check_writable;
 use crate::render::{Film, Filter, RenderJob, Rendering, Sampler};
 use crate::scene::{Backdrop, Environment, Lamp, Scene, SceneParts, Sun, View, load_environment};
@@ -24,8 +24,7 @@ use crate::species;
 use args::{FilterArg, ModelArg, SamplerArg};
 use glam::Vec3;
 use live::Live;
-use output::{Format, Origin};
-use sha2::{Digest, Sha256};
+use output::Format;
 use std::path::Path;
 
 /// Runs the command.
@@ -136,17 +135,18 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         stages.end("export");
         console.say(format!("Mitsuba scene in {}", folder.display()));
     }
-    let of = identity(args, &species, &groom, &scene);
+    let of = identity::of(args, &species, &groom, &scene)?;
     let mut rendering = Rendering::new(&job, &scene)?;
-    checkpoint::run(args, &mut rendering, live, &of, console)?;
+    let kept = checkpoint::run(args, &mut rendering, live, &of, console)?;
     let film = rendering.film();
     stages.end("render");
     report(&film, console);
     if film.report.passes == 0 {
-        return Err(Failure::new(
-            Blame::Interrupted,
-            "stopped before every pixel had a sample; nothing was written",
-        ));
+        let kept = kept.map_or("nothing was written".to_owned(), |path| {
+            format!("{} keeps those there are", path.display())
+        });
+        let message = format!("stopped before every pixel had a sample; {kept}");
+        return Err(Failure::new(Blame::Interrupted, message));
     }
     output::write(&args.output, &args.look, &film, &of, || {
         rendering.sums(&of.text())
@@ -199,79 +199,6 @@ fn job(args: &Args) -> Result<RenderJob, Failure> {
         mattes: args.cryptomatte,
         time_limit: args.time,
     })
-}
-
-/// All that decides the samples besides the job; of environments and tables from files their names.
-fn identity(args: &Args, species: &species::Species, groom: &Groom, scene: &Scene) -> Origin {
-    let res = args.res();
-    let mut settings = format!(
-        "skin {} env {} env-turn {} res {}x{} sampler {:?} strands {:?} bake-photons {}",
-        args.on.name(),
-        args.env(),
-        args.env_turn(),
-        res[0],
-        res[1],
-        args.sampler(),
-        args.strands,
-        args.bake_photons
-    );
-    if args.azimuths != 1 {
-        settings += &format!(" azimuths {}", args.azimuths);
-    }
-    settings += &match args.model {
-        ModelArg::Table => String::new(),
-        ModelArg::Chiang | ModelArg::ChiangFit => {
-            format!(" model {:?} {:?}", args.model, args.chiang)
-        }
-        ModelArg::DoubleCylinder => format!(" model {:?} {:?}", args.model, args.double_cylinder),
-        ModelArg::DoubleCylinderFit => format!(" model {:?}", args.model),
-    };
-    settings += &format!(" tables {:?} ground {}", args.table, !args.no_ground);
-    if args.env_visible {
-        settings += " env-visible";
-    }
-    if args.coat.as_deref() == Some("none") {
-        settings += " coat none";
-    }
-    for (lamp, with_camera) in &args.lamps {
-        settings += &format!(" {lamp:?} with camera {with_camera}");
-    }
-    // Only what goes on later has to be known again, and large grooms take a while to hash.
-    let is_kept = args.checkpoint.is_some()
-        || (args.output.iter()).any(|path| matches!(output::format_of(path), Ok(Format::Sums)));
-    Origin {
-        species: species.id.clone(),
-        species_text: species.text.clone(),
-        settings,
-        seed: args.seed(),
-        view: format!("{:?}", scene.view),
-        geometry: if is_kept {
-            fingerprint(groom, scene)
-        } else {
-            String::new()
-        },
-    }
-}
-
-/// Hash of everything that rays can meet, and of the parts of the coat that it belongs to.
-fn fingerprint(groom: &Groom, scene: &Scene) -> String {
-    let mut hasher = Sha256::new();
-    hasher.update(&groom.coat);
-    for (_, joint) in scene.strands.joints() {
-        for x in joint.to_array() {
-            hasher.update(x.to_le_bytes());
-        }
-    }
-    for corner in scene
-        .surface
-        .iter()
-        .flat_map(|s| s.corners().iter().flatten())
-    {
-        for x in corner.to_array() {
-            hasher.update(x.to_le_bytes());
-        }
-    }
-    hex(&hasher.finalize())
 }
 
 fn environment(args: &Args, view: &View) -> Result<Environment, Failure> {

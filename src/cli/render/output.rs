@@ -49,7 +49,8 @@ pub(in crate::cli) struct Origin {
     pub(super) settings: String,
     pub(super) seed: u64,
     pub(super) view: String,
-    pub(super) geometry: String,
+    /// Hash of what the others only name; empty where nothing is to go on.
+    pub(super) content: String,
 }
 
 impl Origin {

@@ -183,22 +183,19 @@ fn every_ray_is_shown_to_the_bit_what_a_test_of_all_triangles_finds() {
 #[test]
 #[cfg(target_arch = "x86_64")]
 fn leaves_and_normals_are_met_alike_by_every_processor() {
-    use crate::accel::lanes::{Avx2, Avx512, Lanes, Plain, has_avx2, has_avx512};
-    #[inline(always)]
-    fn all<L: Lanes>(leaf: &Leaf, node: &Node, line: &Line) -> (u32, [u32; 2]) {
-        let kinds = [Kind::ALL.0, Region::Void as usize].map(|kind| leaf.meets::<L>(line, kind));
-        (kinds[0] | kinds[1] << 8, node.faces::<L>(line))
-    }
-    #[target_feature(enable = "avx2,fma,bmi1,popcnt,lzcnt")]
-    fn avx2(leaf: &Leaf, node: &Node, line: &Line) -> (u32, [u32; 2]) {
-        all::<Avx2>(leaf, node, line)
-    }
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,popcnt,lzcnt")]
-    fn avx512(leaf: &Leaf, node: &Node, line: &Line) -> (u32, [u32; 2]) {
-        all::<Avx512>(leaf, node, line)
-    }
-    if !has_avx2() {
-        return;
+    use crate::accel::lanes::{Lanes, Plain, Task, on_avx2, on_avx512};
+    #[derive(Clone, Copy)]
+    struct All<'a>(&'a Leaf, &'a Node, &'a Line);
+    impl Task for All<'_> {
+        type Output = (u32, [u32; 2]);
+
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let Self(leaf, node, line) = self;
+            let kinds =
+                [Kind::ALL.0, Region::Void as usize].map(|kind| leaf.meets::<L>(line, kind));
+            (kinds[0] | kinds[1] << 8, node.faces::<L>(line))
+        }
     }
     let mut rng = Rng::new(12, 0);
     let (mut met, mut turned_away, mut seen) = (0, 0, 0);
@@ -210,17 +207,13 @@ fn leaves_and_normals_are_met_alike_by_every_processor() {
             let line = Line::new(&Shear::new(origin, dir), &tree.grid, tree.step, tree.room);
             let leaf = &tree.leaves[rng.bits() as usize % tree.leaves.len()];
             let node = &tree.nodes[rng.bits() as usize % tree.nodes.len()];
-            let want = all::<Plain>(leaf, node, &line);
+            let all = All(leaf, node, &line);
+            let want = all.run::<Plain>();
             some += usize::from(want.0 != 0);
             turned_away += (!want.1[0] & 0xff).count_ones();
             seen += want.1[0].count_ones();
-            #[allow(unsafe_code, reason = "the processor was asked")]
-            // SAFETY: the processor has what the functions enable.
-            unsafe {
-                assert_eq!(avx2(leaf, node, &line), want, "{name}, ray {i}");
-                if has_avx512() {
-                    assert_eq!(avx512(leaf, node, &line), want, "{name}, ray {i}");
-                }
+            for quick in [on_avx2(all), on_avx512(all)].into_iter().flatten() {
+                assert_eq!(quick, want, "{name}, ray {i}");
             }
         }
         met += some;
