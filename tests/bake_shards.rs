@@ -58,7 +58,7 @@ fn fly(bake: &Bake<'_>) {
 fn shards(structure: &Structure, settings: &Settings, of: u64, folder: &Path) -> Vec<PathBuf> {
     (1..=of)
         .map(|index| {
-            let bake = bake(structure, settings).with_shard(Shard { index, of });
+            let bake = bake(structure, settings).with_shard(Shard::new(index, of).unwrap());
             fly(&bake);
             let path = folder.join(format!("{index}of{of}.safetensors"));
             bake.save(&path).unwrap();

@@ -74,11 +74,12 @@ fn of_levels(levels: Vec<f64>, photons: u64) -> Settings {
     }
 }
 
-/// Depths between those of the tables: three an octave, from 0.012 to 690.
+/// Depths between those of the tables, three an octave: from two octaves below the first level that absorbs to three
+/// beyond the last of twelve.
 fn depths() -> [Vec<f64>; 3] {
+    let first = absorption_levels(2)[1];
     [0.25, 0.5, 0.75].map(|part| {
-        let first = 0.0125 * f64::exp2(part - 1.0);
-        let powers = (0..16).map(|k| first * f64::from(1u32 << k));
+        let powers = (-2..13).map(|octave| first * f64::exp2(f64::from(octave) + part));
         std::iter::once(0.0).chain(powers).collect()
     })
 }

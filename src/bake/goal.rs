@@ -7,8 +7,8 @@ use std::time::Instant;
 pub struct Goal {
     /// Relative L2 error of S ([`super::Bake::error`]), for instance 0.01.
     ///
-    /// The error is looked at after counts of photons that depend on nothing but the sums, so the same
-    /// goal is met by the same photons on any machine.
+    /// The error is looked at after counts of photons that depend on nothing but the sums, so a bake that begins with
+    /// nothing meets the same goal with the same photons on any machine. One that goes on from saved sums first looks there.
     pub error: Option<f64>,
     /// A moment to have a table by: time for [`super::Bake::snapshot`] is kept free. What is done by then
     /// does depend on the machine.

@@ -155,7 +155,7 @@ impl<'a> Bake<'a> {
     /// with those of the other parts. Before the first pass.
     pub fn with_shard(mut self, shard: Shard) -> Self {
         self.range = shard.span(self.header.plan.settings.photons);
-        self.header.shards = shard.of;
+        self.header.shards = shard.of();
         let done = self.done.get_mut().unwrap_or_else(PoisonError::into_inner);
         done.span = self.range.start..self.range.start;
         self
@@ -216,8 +216,12 @@ impl<'a> Bake<'a> {
     /// The table of what is done so far. Its content hash is that of a bake of so many photons.
     ///
     /// # Errors
-    /// [`BakeError::Stopped`] before the first pass is done.
+    /// [`BakeError::Stopped`] before the first pass is done; [`BakeError::Part`] for shards other than the first, whose
+    /// photons are not those of any whole bake.
     pub fn snapshot(&self) -> Result<Undyed, BakeError> {
+        if self.range.start != 0 {
+            return Err(BakeError::Part);
+        }
         let done = self.done();
         let photons = done.span.end - done.span.start;
         let Header {

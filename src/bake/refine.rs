@@ -63,14 +63,15 @@ impl Bake<'_> {
     pub fn refine(&self, goal: &Goal, progress: &dyn Progress, cancel: &Cancel) -> Option<Ended> {
         let mut hand = lock(&self.hand);
         let end = self.done().span.end;
+        let done = end - self.range.start;
         if let Some(goal) = goal.error
-            && end >= hand.check
+            && done >= hand.check
         {
             let error = self.error();
             if error <= goal {
                 return Some(Ended::Error);
             }
-            hand.check = next_check(end, error, goal);
+            hand.check = next_check(done, error, goal);
         }
         let count = match self.next_pass(&hand, end, goal) {
             Ok(count) => count,
@@ -236,8 +237,9 @@ impl Bake<'_> {
                 count.max(nodes)
             }
         };
-        if goal.error.is_some() && end < hand.check {
-            count = count.min(hand.check - end);
+        let done = end - self.range.start;
+        if goal.error.is_some() && done < hand.check {
+            count = count.min(hand.check - done);
         }
         Ok(count.min(left))
     }

@@ -132,6 +132,9 @@ pub enum BakeError {
     /// Stopped before the table was complete, or before there was any.
     #[error("stopped before the table was complete")]
     Stopped,
+    /// A table is asked of a shard that does not begin with the first photon.
+    #[error("a part of a bake has no table: merge it with the others")]
+    Part,
     /// Sums and tables do not fit into the memory that is allowed.
     #[error(
         "a bake of these sizes needs {} MB on one thread; {} MB are allowed",
@@ -150,7 +153,7 @@ impl BakeError {
     pub fn blame(&self) -> Blame {
         match self {
             Self::Setting { .. } => Blame::Input,
-            Self::Fiber(_) | Self::Memory { .. } => Blame::Input,
+            Self::Fiber(_) | Self::Memory { .. } | Self::Part => Blame::Input,
             Self::Stopped => Blame::Interrupted,
         }
     }
@@ -216,7 +219,7 @@ pub(super) fn check(settings: &Settings) -> Result<(), BakeError> {
         return refuse(
             "photons",
             settings.photons.to_string(),
-            "8 to 4294967295 a node",
+            "8 to 4294967294 a node",
         );
     }
     if !(1..=tally::MAX_LEVELS).contains(&settings.levels.len()) {

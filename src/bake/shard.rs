@@ -7,12 +7,25 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     /// 1 to `of`.
-    pub index: u64,
-    /// At least 1.
-    pub of: u64,
+    index: u64,
+    of: u64,
 }
 
 impl Shard {
+    /// Most parts that a bake is cut into.
+    const MOST: u64 = 1_000_000;
+
+    /// Part `index`, 1 to `of`, of 1 to 1 000 000 parts; `None` for other numbers.
+    pub fn new(index: u64, of: u64) -> Option<Self> {
+        let is_one = (1..=of).contains(&index) && of <= Self::MOST;
+        is_one.then_some(Self { index, of })
+    }
+
+    /// How many parts there are.
+    pub(super) fn of(self) -> u64 {
+        self.of
+    }
+
     /// The shard's photons of so many: the shards of a bake cover it without gap or overlap.
     pub fn span(&self, photons: u64) -> Range<u64> {
         let cut =
@@ -32,16 +45,10 @@ impl std::str::FromStr for Shard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split_once('/');
-        let parts = parts.and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
-        match parts {
-            Some((index, of)) if (1..=of).contains(&index) && of <= 1_000_000 => {
-                Ok(Self { index, of })
-            }
-            _ => Err(format!(
-                "`{text}` is not a shard such as 2/3, the second of three"
-            )),
-        }
+        let parts = text
+            .split_once('/')
+            .and_then(|(index, of)| Self::new(index.trim().parse().ok()?, of.trim().parse().ok()?));
+        parts.ok_or_else(|| format!("`{text}` is not a shard such as 2/3, the second of three"))
     }
 }
 

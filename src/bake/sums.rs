@@ -233,7 +233,7 @@ fn in_words(gaps: &[Range<u64>], photons: u64, shards: u64) -> String {
             .any(|gap| gap.start <= span.start && span.end <= gap.end)
     };
     let whole: Vec<Shard> = (1..=shards)
-        .map(|index| Shard { index, of: shards })
+        .filter_map(|index| Shard::new(index, shards))
         .filter(missing)
         .collect();
     let photons_of = |spans: &[Range<u64>]| spans.iter().map(|s| s.end - s.start).sum::<u64>();

@@ -200,7 +200,19 @@ pub fn grow(
             .map(|(rank, follicle)| {
                 let vary = vary_of(follicle);
                 let cut = here::trim(class_groom, &vary) <= thick;
-                if cut || surface.length(follicle) * vary[VaryWhat::Length] <= shortest {
+                let length = surface.length(follicle) * vary[VaryWhat::Length];
+                // Most coats shorten hair nowhere by so much that it matters.
+                let is_short = length <= shortest
+                    || coat.as_ref().is_some_and(|coat| {
+                        length * coat.least_hair() <= shortest && {
+                            let root = surface.root(follicle);
+                            let id = id_of(class, rank);
+                            let near = &mut Vec::new();
+                            let (_, hair) = coat.choose(id, root.position, root.normal, near);
+                            length * hair <= shortest
+                        }
+                    });
+                if cut || is_short {
                     Fate::Short
                 } else if vary[VaryWhat::Width] <= 0.0 {
                     Fate::Thin

@@ -119,8 +119,8 @@ fn check_shape(nodes: &Nodes, res: usize, channels: usize) -> Result<(), TableEr
         "{bins} nodes; 1 to {MAX_BINS} are allowed"
     );
     ensure!(
-        (1..=MAX_RES).contains(&res),
-        "{res} texels a face edge; 1 to {MAX_RES} are allowed"
+        res.is_power_of_two() && res <= MAX_RES,
+        "{res} texels a face edge; powers of two up to {MAX_RES} are allowed"
     );
     ensure!(
         (1..=MAX_LEVELS).contains(&channels),

@@ -3,32 +3,12 @@
 use super::args::{Args, ModelArg};
 use crate::assembly::{self, StationTables};
 use crate::bake::{Cache, Settings};
-use crate::blame::Blame;
 use crate::bsdf::{AlongStrand, Chiang, DoubleCylinder, HairMaterial};
 use crate::cli::{Console, Failure, color};
 use crate::groom::GroomSettings;
 use crate::skin::Skin;
 use crate::species::Species;
 use crate::table::{Model, TableFile};
-use std::path::Path;
-
-/// A table whose maps the renderer can look up.
-pub(super) fn given_table(path: &Path) -> Result<TableFile, Failure> {
-    let table = TableFile::read(path)?;
-    let res = match &table {
-        TableFile::Structure(table) => table.res,
-        TableFile::Scatter(maps) => maps.res,
-    };
-    if !res.is_power_of_two() {
-        let message = format!("{} has {res} texels a face edge", path.display());
-        return Err(Failure::with_help(
-            Blame::Input,
-            message,
-            "bake it again with --face 64 or another power of two",
-        ));
-    }
-    Ok(table)
-}
 
 /// The materials of all hair classes. Dyes get the strength that their colors need.
 pub(super) fn materials(

@@ -21,6 +21,7 @@ use crate::render::{Film, Filter, RenderJob, Rendering, Sampler};
 use crate::scene::{Backdrop, Environment, Lamp, Scene, SceneParts, Sun, View, load_environment};
 use crate::skin::Skin;
 use crate::species;
+use crate::table::TableFile;
 use args::{FilterArg, ModelArg, SamplerArg};
 use glam::Vec3;
 use live::Live;
@@ -80,8 +81,8 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         .as_ref()
         .map(|address| Live::connect(address, &args.output[0]));
     let live = live.transpose()?;
-    let given = args.table.iter().map(|path| material::given_table(path));
-    let given = given.collect::<Result<Vec<_>, Failure>>()?;
+    let given = args.table.iter().map(|path| TableFile::read(path));
+    let given = given.collect::<Result<Vec<_>, _>>()?;
     let skin = args.on.load()?;
     let view = view(args, &skin)?;
     let environment = environment(args, &view)?;

@@ -17,11 +17,11 @@ const REACH: i32 = 1 << 20;
 /// What strands leave in one voxel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Moments {
-    /// Sum of diameter times length, square meters.
+    /// Sum of diameter times length, square units of the file.
     pub(super) area: f64,
-    /// Sum of lengths, meters.
+    /// Sum of lengths, units of the file.
     pub(super) length: f64,
-    /// Sum of volumes, cubic meters.
+    /// Sum of volumes, cubic units of the file.
     pub(super) volume: f64,
     /// Sum of unit tangents, root to tip, times area.
     pub(super) tangent: DVec3,

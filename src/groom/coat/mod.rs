@@ -158,6 +158,11 @@ impl Coat {
         }
         (0, self.hair[0])
     }
+
+    /// What [`Coat::choose`] gives for the length at least.
+    pub(super) fn least_hair(&self) -> f32 {
+        self.hair.iter().copied().fold(f32::INFINITY, f32::min)
+    }
 }
 
 /// Meters of the skin in a millimeter of the recipe.
@@ -181,14 +186,12 @@ fn points(area: f64, recipe: &CoatRecipe, scale: f32, warnings: &mut Vec<String>
                 Some(layers::FRAGMENT * spots.wavelength_mm * spots.fine)
             }
             CoatPattern::Patches { size_mm, .. } => Some(0.5 * size_mm),
-            CoatPattern::Plain => None,
-            // A picture has any detail: as fine as the net goes.
-            CoatPattern::Map { .. } => Some(0.0),
+            CoatPattern::Plain | CoatPattern::Map { .. } => None,
         });
     let finest = finest.fold(f64::INFINITY, f64::min);
     let wanted = finest * f64::from(scale) / f64::from(POINTS_A_WAVE);
-    let count = (area / (0.866 * wanted * wanted)).max(LEAST_POINTS);
-    if count > MOST_POINTS && finest > 0.0 {
+    let mut count = (area / (0.866 * wanted * wanted)).max(LEAST_POINTS);
+    if count > MOST_POINTS {
         let least = spacing_of(MOST_POINTS) * f64::from(POINTS_A_WAVE);
         warnings.push(format!(
             "the finest pattern of the coat, {:.3} m on this skin, is coarser than asked for: {least:.3} m \
@@ -196,6 +199,10 @@ fn points(area: f64, recipe: &CoatRecipe, scale: f32, warnings: &mut Vec<String>
             finest * f64::from(scale),
         ));
     }
-    let count = count.min(MOST_POINTS);
+    let is_map = |layer: &CoatLayer| matches!(layer.pattern, CoatPattern::Map { .. });
+    if count > MOST_POINTS || recipe.layers.iter().any(is_map) {
+        // A picture has any detail: as fine as the net goes.
+        count = MOST_POINTS;
+    }
     (count as usize, spacing_of(count) as f32)
 }

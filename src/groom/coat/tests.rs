@@ -146,6 +146,46 @@ fn hairs_mix_in_proportion_to_the_shares() {
     }
 }
 
+/// Hair that its zone makes shorter than it is thick does not grow, and is counted.
+#[test]
+fn stubs_of_a_zone_are_counted() {
+    let skin = skin::load("swatch").unwrap();
+    let mut species = fox();
+    let mut coat = recipe(CoatPattern::Plain);
+    coat.layers[0].strength = 0.3;
+    coat.zones[0].hair = 0.0025;
+    species.coat = Some(coat);
+    for class in &mut species.classes {
+        class.groom.length_mm = 400.0 * 1e-3 * class.groom.diameter_um / 2.0;
+        class.groom.vary.clear();
+    }
+    let groom = grown(&skin, &species, 20_000, 1);
+    assert!(groom.coat.iter().all(|&zone| zone == 0));
+    let short: usize = groom.accounts.iter().map(|account| account.short).sum();
+    assert!((short as f64 - 6_000.0).abs() < 260.0, "{short} of 20000");
+}
+
+/// A picture takes as many points as there are, but whether a pattern beside it is too fine is still said.
+#[test]
+fn patterns_too_fine_are_named_beside_pictures() {
+    let picture = Arc::new(Picture::new(1, 1, vec![1.0]).unwrap());
+    let mut coat = recipe(CoatPattern::Map { picture });
+    let needed = |coat: &CoatRecipe| {
+        let mut warnings = Vec::new();
+        let (count, _) = points(1.0, coat, 1e-3, &mut warnings);
+        (count, warnings.join(" "))
+    };
+    assert_eq!(needed(&coat), (MOST_POINTS as usize, String::new()));
+    let layer = CoatLayer {
+        pattern: stripes(0.01, 0.0, 0.0),
+        ..coat.layers[0].clone()
+    };
+    coat.layers.push(layer);
+    let (count, said) = needed(&coat);
+    assert_eq!(count, MOST_POINTS as usize);
+    assert!(said.contains("coarser than asked for"), "{said}");
+}
+
 /// A picture over the texture coordinates paints where it is bright.
 #[test]
 fn maps_paint_by_texture_coordinates() {

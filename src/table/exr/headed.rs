@@ -3,11 +3,6 @@
 use crate::io::{AtomicFile, sort_exr_attributes};
 use std::io::{Result, Seek, SeekFrom, Write};
 
-/// Bytes that are kept, beside those for each part: attributes of a table and offsets of its lines.
-const KEPT: usize = 1 << 20;
-/// For each part.
-const KEPT_A_PART: usize = 1 << 14;
-
 /// An EXR file under way. Its headers are put in order when all else is on its way to the disk.
 pub(super) struct Headed {
     head: Vec<u8>,
@@ -19,8 +14,8 @@ pub(super) struct Headed {
 }
 
 impl Headed {
-    pub(super) fn new(file: AtomicFile, parts: usize) -> Self {
-        let kept = KEPT + parts * KEPT_A_PART;
+    /// * `kept`: bytes that the headers take at most.
+    pub(super) fn new(file: AtomicFile, kept: usize) -> Self {
         Self {
             head: Vec::new(),
             kept,

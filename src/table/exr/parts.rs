@@ -1,6 +1,6 @@
 //! Unicubes of 32-bit floats as parts of a file.
 
-use super::attributes::Attributes;
+use super::attributes::{Attributes, Value};
 use super::headed::Headed;
 use super::packed;
 use super::raw::{self, RawPart};
@@ -31,7 +31,8 @@ pub(super) fn write(parts: Vec<Part<'_>>, path: &Path) -> Result<(), TableError>
         let bytes = raw::encode(owned(parts), Compression::ZIP16, path)?;
         return Ok(AtomicFile::write_all_to(path, &bytes)?);
     }
-    let mut file = Headed::new(AtomicFile::create(path)?, parts.len());
+    let head = parts.iter().map(head_bytes).sum();
+    let mut file = Headed::new(AtomicFile::create(path)?, head);
     raw::write_plain(&parts, &mut file).map_err(|error| match error {
         exr::error::Error::Io(error) => FileError::new("write", path, error).into(),
         other => TableError::Encode {
@@ -53,6 +54,19 @@ pub(super) fn encode(
     path: &Path,
 ) -> Result<Vec<u8>, TableError> {
     raw::encode(owned(parts), compression, path)
+}
+
+/// Bytes of a part's header, at most.
+fn head_bytes(part: &Part<'_>) -> usize {
+    /// What the format wants of every part, and what stands beside the values and names of the others.
+    const OWN: usize = 1024;
+    const BESIDE: usize = 64;
+    let values = part.attributes.0.iter().map(|(name, value)| match value {
+        Value::Text(text) => name.len() + text.len() + BESIDE,
+        Value::Int(_) | Value::Double(_) => name.len() + BESIDE,
+    });
+    let channels = part.channels.iter().map(|(name, _)| name.len() + BESIDE);
+    OWN + part.name.len() + values.chain(channels).sum::<usize>()
 }
 
 fn is_smooth(parts: &[Part<'_>]) -> bool {

@@ -5,10 +5,6 @@
 //! and a weight a map are enough. Not aligned, eight images leave 30 to 80 % of error; aligned, 1 to 2 %
 //! on fibers whose light follows the cone.
 //!
-//! The same factorization takes noise out: an image is seen through all nodes and levels at once, so
-//! its noise is a fraction of a map's, and what the noise alone would add, the trailing images, is left
-//! away ([`Rank::Noise`]).
-//!
 //! Moving maps to the grid and back blurs them by about a texel, which is 5 to 15 % of a sharp cone. So the
 //! factors are not those of the moved maps: what the factors fail to give back is moved again and added,
 //! until they give back the maps themselves (Van Cittert's iteration, projected to the rank each time).
@@ -25,27 +21,6 @@ use rayon::prelude::*;
 
 /// Rounds of refinement. Four leave a third of the blur, eight amplify noise more than they sharpen.
 const ROUNDS: usize = 6;
-
-/// Images are kept whose energy is so many times that of noise: refinement sharpens noise as well, and
-/// below 3 the largest of pure noise pass; at 6 real ones begin to miss.
-const NOISE_MARGIN: f64 = 4.0;
-
-/// How many images to keep.
-#[cfg_attr(
-    not(test),
-    expect(
-        dead_code,
-        reason = "packing fixes the rank; taking noise out of bakes does not"
-    )
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::table) enum Rank {
-    /// So many.
-    Fixed(usize),
-    /// As many as stand out of noise: images whose energy exceeds that which noise of this total
-    /// energy (sum of the variances of all cells of all rows) puts into each.
-    Noise(f64),
-}
 
 /// Maps as sums of images.
 #[derive(Clone, Debug)]
@@ -71,8 +46,8 @@ pub(in crate::table) struct Rows<'a> {
 }
 
 impl Factors {
-    /// Factors of the rows.
-    pub(in crate::table) fn new(rows: &Rows<'_>, rank: Rank) -> Self {
+    /// Factors of the rows: `rank` images.
+    pub(in crate::table) fn new(rows: &Rows<'_>, rank: usize) -> Self {
         let grid = Grid::new(rows.layout);
         let channels = rows.maps.len() / rows.thetas.len();
         let sources: Vec<_> = rows
@@ -122,7 +97,7 @@ impl Factors {
     }
 
     /// The best factors of a stack of images: eigenvectors of the rows' products.
-    fn fit(&mut self, stack: &[Vec<f32>], importance: &[f64], rank: Rank) {
+    fn fit(&mut self, stack: &[Vec<f32>], importance: &[f64], rank: usize) {
         let n = stack.len();
         let pairs: Vec<(usize, usize)> =
             (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))).collect();
@@ -135,15 +110,8 @@ impl Factors {
             gram[i * n + j] = product;
             gram[j * n + i] = product;
         }
-        let (values, vectors) = symmetric(&gram, n);
-        let keep = match rank {
-            Rank::Fixed(k) => k,
-            Rank::Noise(energy) => {
-                let level = NOISE_MARGIN * energy / n as f64;
-                values.iter().filter(|&&v| v > level).count()
-            }
-        };
-        let keep = keep.clamp(1, n);
+        let (_, vectors) = symmetric(&gram, n);
+        let keep = rank.clamp(1, n);
         self.images = (0..keep)
             .into_par_iter()
             .map(|k| {

@@ -1,9 +1,8 @@
-//! Products come back; noise does not.
+//! Products come back.
 
 use super::*;
 use crate::math::frame;
 use crate::math::unicube::Unicube;
-use crate::sampling::Rng;
 use crate::table::{Mode, Nodes};
 
 const LAYOUT: Layout = Layout {
@@ -48,7 +47,7 @@ fn distance(nodes: &Nodes, a: &[Vec<f32>], b: &[Vec<f32>]) -> f64 {
     (apart / square).sqrt()
 }
 
-fn factors(nodes: &Nodes, maps: &[Vec<f32>], rank: Rank) -> Factors {
+fn factors(nodes: &Nodes, maps: &[Vec<f32>], rank: usize) -> Factors {
     let rows = Rows {
         layout: LAYOUT,
         thetas: &nodes.centers,
@@ -62,40 +61,8 @@ fn factors(nodes: &Nodes, maps: &[Vec<f32>], rank: Rank) -> Factors {
 fn two_images_hold_a_sum_of_two_products() {
     let nodes = Nodes::new(Mode::Cone, 12);
     let maps = cone(&nodes);
-    let factors = factors(&nodes, &maps, Rank::Fixed(3));
+    let factors = factors(&nodes, &maps, 3);
     let back = factors.maps(LAYOUT, &nodes.centers);
     let off = distance(&nodes, &back, &maps);
     assert!(off < 0.02, "{off}");
-}
-
-#[test]
-fn noise_is_left_away() {
-    let nodes = Nodes::new(Mode::Cone, 12);
-    let truth = cone(&nodes);
-    let mut rng = Rng::new(8, 1);
-    let sigma = 0.1;
-    let width = 12f64.sqrt() * sigma;
-    let noisy: Vec<Vec<f32>> = truth
-        .iter()
-        .map(|map| {
-            map.iter()
-                .map(|x| x + (width * (rng.uniform() - 0.5)) as f32)
-                .collect()
-        })
-        .collect();
-    // Half of all cells are seen by a node, each with the texel's noise times the cosine.
-    let grid = Grid::new(LAYOUT);
-    let energy = 12.0 * grid.len() as f64 * 0.25 * sigma * sigma;
-    let factors = factors(&nodes, &noisy, Rank::Noise(energy));
-    assert!(
-        (1..=6).contains(&factors.images.len()),
-        "{}",
-        factors.images.len()
-    );
-    let back = factors.maps(LAYOUT, &nodes.centers);
-    let (before, after) = (
-        distance(&nodes, &noisy, &truth),
-        distance(&nodes, &back, &truth),
-    );
-    assert!(after < 0.75 * before, "{before} before, {after} after");
 }

@@ -4,7 +4,7 @@ use super::prepare::Prepared;
 use super::tree::{Tiles, Trees};
 use super::{Code, Kind, PackedTable, Packing};
 use crate::table::compare::TableRef;
-use crate::table::lowrank::{Factors, Grid, Rank, Rows, symmetric};
+use crate::table::lowrank::{Factors, Grid, Rows, symmetric};
 use crate::table::{TableError, exr};
 use rayon::prelude::*;
 use std::path::Path;
@@ -23,12 +23,6 @@ const PRICES: [f64; 2] = [1e-13, 1e-3];
 const WITHOUT_TEXT: usize = 50_000;
 
 pub(super) fn pack(table: TableRef<'_>, packing: Packing) -> Result<PackedTable, TableError> {
-    if !table.res().is_power_of_two() {
-        return Err(TableError::Request(format!(
-            "a table of {} texels a face edge; only powers of two can be packed",
-            table.res()
-        )));
-    }
     let maps = table.nodes().len() * table.channels();
     if packing.rank.is_some_and(|rank| rank == 0 || rank > maps) {
         return Err(TableError::Request(format!(
@@ -213,7 +207,7 @@ impl Images {
             maps: &prepared.maps,
             importance: &importance,
         };
-        let mut factors = Factors::new(&rows, Rank::Fixed(rank));
+        let mut factors = Factors::new(&rows, rank);
         let grid = factors.grid;
         let count = factors.images.len();
         // Images of a root mean square of 1, so that half floats hold them.

@@ -102,7 +102,7 @@ impl Code {
 impl PackedTable {
     /// Packs a table.
     ///
-    /// * Errors: a face edge that is no power of two, a rank of 0 or above the number of maps, a size
+    /// * Errors: a rank of 0 or above the number of maps, a size
     ///   too small to hold anything, several azimuths.
     pub fn new<'a>(table: impl Into<TableRef<'a>>, packing: Packing) -> Result<Self, TableError> {
         let table = table.into();

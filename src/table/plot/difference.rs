@@ -27,7 +27,7 @@ impl DifferencePlot<'_> {
     /// The picture: both on the color scale of the reference, then their difference in shares of the
     /// reference's peak, red where the first table is brighter.
     ///
-    /// * Errors: inclination, channel or size out of range, a table whose face edge is no power of two.
+    /// * Errors: inclination, channel or size out of range.
     pub fn draw(&self) -> Result<Canvas, TableError> {
         let (width, height) = self.size;
         if !(1200..=8192).contains(&width) || !(400..=8192).contains(&height) {
@@ -82,7 +82,6 @@ impl DifferencePlot<'_> {
     fn prepare(&self, which: usize) -> Result<(ScatterTable, f64), TableError> {
         let table = self.tables[which];
         let (nodes, res) = (table.nodes(), table.res());
-        super::check_face(res)?;
         nodes.only_averaged()?;
         let gray = table.channel(self.channel).ok_or_else(|| {
             TableError::Request(format!(

@@ -61,7 +61,7 @@ pub struct Plot<'a> {
 impl Plot<'_> {
     /// The picture.
     ///
-    /// * Errors: inclination or size out of range, a table whose face edge is no power of two.
+    /// * Errors: inclination or size out of range.
     pub fn draw(&self) -> Result<Canvas, TableError> {
         let (width, height) = self.size;
         let request = |what: String| Err(TableError::Request(what));
@@ -75,7 +75,6 @@ impl Plot<'_> {
             ));
         }
         check_incidence(self.incidence_deg)?;
-        check_face(self.maps.res)?;
         self.maps.nodes.only_averaged()?;
         let maps = self.maps;
         let table = ScatterTable::new(maps.nodes.clone(), maps.res, maps.rgb.clone());
@@ -135,7 +134,7 @@ impl Plot<'_> {
 ///
 /// * `incidence_deg`: inclination of the query direction, degrees in -90..=90.
 /// * `size`: width and height in pixels, 32 to 4096.
-/// * Errors: inclination or size out of range, a table whose face edge is no power of two.
+/// * Errors: inclination or size out of range.
 pub fn draw_lobe(
     maps: &ScatterMaps,
     incidence_deg: f64,
@@ -147,7 +146,6 @@ pub fn draw_lobe(
         return Err(TableError::Request(what));
     }
     check_incidence(incidence_deg)?;
-    check_face(maps.res)?;
     maps.nodes.only_averaged()?;
     let table = ScatterTable::new(maps.nodes.clone(), maps.res, maps.rgb.clone());
     let photons = maps.ledger.iter().map(|l| l.photons()).sum::<f64>();
@@ -184,15 +182,6 @@ fn check_incidence(degrees: f64) -> Result<(), TableError> {
     }
     Err(TableError::Request(format!(
         "an incidence of {degrees} degrees; -90 to 90 are possible"
-    )))
-}
-
-fn check_face(res: usize) -> Result<(), TableError> {
-    if res.is_power_of_two() {
-        return Ok(());
-    }
-    Err(TableError::Request(format!(
-        "a table of {res} texels a face edge; only powers of two can be looked up"
     )))
 }
 
