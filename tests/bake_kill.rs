@@ -183,7 +183,7 @@ fn a_signal_keeps_the_work_and_the_same_command_goes_on() {
 fn what_cannot_be_written_is_kept_and_said() {
     let desk = Desk::new();
     let bake = "bake glass-cylinder --face 16 --bins 4 --threads 1 --no-cache -o out.exr";
-    let run = format!("{bake} --photons 1e11 --checkpoint-every 10ms --preview-every 10ms");
+    let run = format!("{bake} --photons 1e10 --checkpoint-every 10ms --preview-every 10ms");
     let child = desk.command(&run).stderr(Stdio::piped()).spawn().unwrap();
     wait_for(&desk.at("out.exr"));
     let checkpoint = desk.at("out.exr.checkpoint");

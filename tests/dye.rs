@@ -164,8 +164,8 @@ fn dyed_tables_are_those_of_direct_bakes() {
         println!("{name}: {worst:.4?}");
         let [albedo, s] = worst.within.map(|w| w.0);
         assert!(albedo < 0.005 && s < 0.01, "{name}: {worst:?}");
-        // Eight times the last level: ten times as black as black hair.
-        assert!(worst.beyond.iter().all(|w| w.0 < 0.02), "{name}: {worst:?}");
+        // To 551, where a moose's black is 74.
+        assert!(worst.beyond.iter().all(|w| w.0 < 0.04), "{name}: {worst:?}");
         // What is asked for is not given away: with half of the levels it does not hold.
         let coarse = Worst::of(&thinned(&table), &direct, last);
         assert!(coarse.within[0].0 > 0.01, "{name}: {coarse:?}");
