@@ -1,5 +1,6 @@
 //! Baked tables by content: a bake with the same structure and settings is never done twice.
 
+use crate::io::{FileError, check_writable};
 use crate::table::{StructureTable, TableError};
 use std::path::{Path, PathBuf};
 
@@ -60,6 +61,16 @@ impl Cache {
     pub fn get(&self, content: &str) -> Option<StructureTable> {
         let table = StructureTable::read(&self.path(content)).ok()?;
         (table.provenance.content == content).then_some(table)
+    }
+
+    /// Whether something can be stored.
+    ///
+    /// # Errors
+    /// A folder that cannot be made or written to.
+    pub fn check(&self) -> Result<(), FileError> {
+        std::fs::create_dir_all(&self.folder)
+            .map_err(|e| FileError::new("create", &self.folder, e))?;
+        check_writable(&self.path("any"))
     }
 
     /// Stores a finished table.

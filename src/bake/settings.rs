@@ -214,12 +214,12 @@ pub(super) fn check(settings: &Settings) -> Result<(), BakeError> {
             "1 in paper mode: the paper averages them",
         );
     }
-    let photons = LEAST_A_NODE..=MOST_A_NODE;
-    if !photons.contains(&(settings.photons / settings.nodes() as u64)) {
+    let nodes = settings.nodes() as u64;
+    if !(LEAST_A_NODE..=MOST_A_NODE).contains(&(settings.photons / nodes)) {
         return refuse(
-            "photons",
-            settings.photons.to_string(),
-            "8 to 4294967294 a node",
+            "the number of photons over that of nodes",
+            (settings.photons / nodes).to_string(),
+            "8 to 4294967294",
         );
     }
     if !(1..=tally::MAX_LEVELS).contains(&settings.levels.len()) {

@@ -36,6 +36,17 @@ pub(super) fn run(args: &Args, _console: &Console) -> Result<(), Failure> {
     ))
 }
 
+/// The user's cache, if it is wanted; whether something can be kept there is said before any work.
+pub(super) fn of_user(unwanted: bool, console: &Console) -> Option<Cache> {
+    let cache = Cache::of_user().filter(|_| !unwanted)?;
+    if let Err(error) = cache.check() {
+        console.say(format!(
+            "warning: {error}: what is baked will be baked again the next time; VAIR_CACHE may name another folder"
+        ));
+    }
+    Some(cache)
+}
+
 fn no_cache() -> Failure {
     let help = "set VAIR_CACHE to a folder, or pass --no-cache";
     Failure::with_help(

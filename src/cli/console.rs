@@ -1,6 +1,6 @@
 //! The terminal: progress bars and Ctrl-C.
 
-use super::stdout::harmless;
+use super::stdout::{harmless, tell};
 use crate::progress::{Cancel, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Mutex;
@@ -39,7 +39,7 @@ impl Console {
     pub fn say(&self, remark: impl std::fmt::Display) {
         if !self.quiet {
             let remark = remark.to_string();
-            self.with_bar(|bar| bar.suspend(|| eprintln!("{}", harmless(&remark))));
+            self.with_bar(|bar| bar.suspend(|| tell(harmless(&remark))));
         }
     }
 

@@ -7,11 +7,12 @@ mod settings;
 mod usdz;
 mod volume;
 
+use super::cache;
 use super::color;
 use super::skin::SkinArgs;
 use super::{Console, Failure, bake::parse_count};
 use crate::assembly::{self, StationTables};
-use crate::bake::{Cache, Settings};
+use crate::bake::Settings;
 use crate::blame::Blame;
 use crate::export::asset::{self, ClassLook, Parts, Wear};
 use crate::export::{ExportError, Format};
@@ -248,7 +249,7 @@ fn looks(
     if args.no_material {
         return Ok(Vec::new());
     }
-    let cache = Cache::of_user().filter(|_| !args.no_cache);
+    let cache = cache::of_user(args.no_cache, console);
     let bake = Settings {
         photons: args.bake_photons,
         seed: args.seed,

@@ -1,6 +1,6 @@
 //! What a command returns when it cannot do what was asked.
 
-use super::stdout::harmless;
+use super::stdout::{harmless, tell};
 use crate::blame::Blame;
 use std::process::ExitCode;
 
@@ -40,7 +40,7 @@ impl Failure {
 
     /// Prints the report to stderr and gives the exit code.
     pub fn report(&self) -> ExitCode {
-        eprintln!("{:?}", self.report);
+        tell(format_args!("{:?}", self.report));
         ExitCode::from(match self.blame {
             Blame::Input => 1,
             Blame::Environment => 2,

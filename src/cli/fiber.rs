@@ -58,16 +58,11 @@ pub(super) struct Args {
     #[arg(long, value_name = "NA")]
     condenser: Option<f64>,
     /// Light microscope: plane in focus, micrometers above the middle of the fiber.
-    #[arg(
-        long,
-        value_name = "UM",
-        default_value_t = 0.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "UM", default_value_t = 0.0)]
     focus: f64,
     /// Light microscope: how much brighter the lamp is than for the empty field, stops; if not given,
     /// as bright as dark hair needs.
-    #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "STOPS")]
     lamp: Option<f64>,
     /// Leave the caption out; a scale bar stays.
     #[arg(long)]

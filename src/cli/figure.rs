@@ -1,6 +1,6 @@
 //! `vair figure`: several pictures on one sheet, from a recipe of `vair` commands.
 
-use super::gallery::check_sheet;
+use super::check_output;
 use super::{Cli, Command, Console, Failure};
 use crate::blame::Blame;
 use crate::image::{Canvas, GLYPH_HEIGHT};
@@ -120,7 +120,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         return super::stdout::print(&text);
     };
     let recipe = read(&args.name, &text)?;
-    check_sheet(output)?;
+    check_output(output, "a sheet", "png")?;
     let scratch = tempfile::tempdir()
         .map_err(|e| FileError::new("create a folder in", &std::env::temp_dir(), e))?;
     let folder = args.panels.as_deref().unwrap_or(scratch.path());
@@ -344,8 +344,8 @@ mod tests {
     #[test]
     fn sheets_are_png() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(check_sheet(&folder.path().join("sheet.PNG")).is_ok());
-        let error = check_sheet(&folder.path().join("sheet.jpg")).unwrap_err();
+        assert!(check_output(&folder.path().join("sheet.PNG"), "a sheet", "png").is_ok());
+        let error = check_output(&folder.path().join("sheet.jpg"), "a sheet", "png").unwrap_err();
         let report = format!("{:?}", error.report);
         assert!(report.contains("must end in .png"), "{report}");
     }

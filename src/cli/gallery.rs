@@ -1,14 +1,14 @@
 //! `vair gallery`: the library in pictures.
 
+use super::cache;
 use super::species::field_guide;
-use super::{Console, Failure};
-use crate::bake::Cache;
+use super::{Console, Failure, check_output};
 use crate::blame::Blame;
 use crate::gallery::{
     self, Column, GalleryError, Page, Quality, ROW_HEIGHTS, Row, Studio, pictures_of,
 };
 use crate::image::Canvas;
-use crate::io::{AtomicFile, check_writable};
+use crate::io::AtomicFile;
 use crate::micrograph::Legend;
 use crate::progress::Progress as _;
 use crate::species::{self, Origins, Species};
@@ -127,13 +127,9 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         ));
     }
     for path in &args.output {
-        check_sheet(path)?;
+        check_output(path, "a sheet", "png")?;
     }
-    let cache = if args.no_cache {
-        None
-    } else {
-        Cache::of_user()
-    };
+    let cache = cache::of_user(args.no_cache, console);
     let work = Work {
         args,
         console,
@@ -329,14 +325,4 @@ fn others(folder: &Path, than: &[&Species]) -> Result<Vec<Species>, Failure> {
         |id: &&str| than.iter().all(|s| s.id != *id) && folder.join(format!("{id}.md")).exists();
     let load = |id: &str| Ok(species::load(id, &[])?);
     species::ids().filter(has_page).map(load).collect()
-}
-
-/// That a sheet can be written to a place, as what its name says.
-pub(super) fn check_sheet(path: &Path) -> Result<(), Failure> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-    if !extension.eq_ignore_ascii_case("png") {
-        let message = format!("{}: a sheet's name must end in .png", path.display());
-        return Err(Failure::new(Blame::Input, message));
-    }
-    Ok(check_writable(path)?)
 }

@@ -30,7 +30,9 @@ pub use console::Console;
 pub use failure::Failure;
 
 use crate::blame::Blame;
-use clap::{Parser, Subcommand};
+use crate::io::check_writable;
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Animal fur from the micro-structure up: fibers, scattering tables, stills.
@@ -77,7 +79,8 @@ enum Command {
 /// Parses the command line, runs the command and returns the exit code.
 pub fn run() -> ExitCode {
     std::panic::set_hook(Box::new(end_in_order));
-    let cli = match Cli::try_parse() {
+    let matches = with_negative_numbers(Cli::command()).try_get_matches();
+    let cli = match matches.and_then(|mut matches| Cli::from_arg_matches_mut(&mut matches)) {
         Ok(cli) => cli,
         Err(error) => {
             // clap exits with 2 by itself; here a bad option is refused input, which is 1.
@@ -96,6 +99,16 @@ pub fn run() -> ExitCode {
     }
 }
 
+/// Takes `-3` for a value, of which its option then says what is wrong with it, and not for an option.
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    command
+        .mut_args(|arg| match arg.get_action().takes_values() {
+            true => arg.allow_negative_numbers(true),
+            false => arg,
+        })
+        .mut_subcommands(with_negative_numbers)
+}
+
 /// A reader that has seen enough (`vair table info x.exr | head`) is no error; any other panic is a
 /// defect of this program, on whichever thread it happens. Files under way are temporary and unnamed.
 fn end_in_order(panic: &std::panic::PanicHookInfo<'_>) {
@@ -107,8 +120,8 @@ fn end_in_order(panic: &std::panic::PanicHookInfo<'_>) {
         .location()
         .map(ToString::to_string)
         .unwrap_or_default();
-    eprintln!("internal error: {message} at {place}");
-    eprintln!("this is a defect of vair; please report it with the command line that led here");
+    stdout::tell(format_args!("internal error: {message} at {place}"));
+    stdout::tell("this is a defect of vair; please report it with the command line that led here");
     std::process::exit(3);
 }
 
@@ -128,6 +141,19 @@ fn dispatch(command: Command, console: &Console) -> Result<(), Failure> {
         Command::Figure(args) => figure::run(&args, console),
         Command::Convert(args) => convert::run(&args, console),
     }
+}
+
+/// That a file can be written to a place, and is what its name says.
+///
+/// * `what`: with its article; `extension`: without the dot.
+fn check_output(path: &Path, what: &str, extension: &str) -> Result<(), Failure> {
+    let found = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+    if !found.eq_ignore_ascii_case(extension) {
+        let path = path.display();
+        let message = format!("{path}: the name of {what} must end in .{extension}");
+        return Err(Failure::new(Blame::Input, message));
+    }
+    Ok(check_writable(path)?)
 }
 
 /// The choice of an option by its name.

@@ -19,6 +19,11 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// Writes a line to stderr. Whoever closed it did not want to read it.
+pub(super) fn tell(line: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
 /// Text with control characters, and those that turn its direction, spelled out: names in files may hold what
 /// drives a terminal. Line breaks and tabs stay.
 pub(super) fn harmless(text: &str) -> Cow<'_, str> {

@@ -5,7 +5,7 @@ use super::{Args, find_class, find_station, settings, write_table};
 use crate::assembly::origin;
 use crate::bake::{Bake, Cache, Checkpoint, Ended, Found, Goal, Settings, SumsError, drive, find};
 use crate::blame::Blame;
-use crate::cli::{Console, Failure};
+use crate::cli::{self, Console, Failure, cache};
 use crate::fiber::Fiber;
 use crate::io::check_writable;
 use crate::species::{self, Structure};
@@ -18,7 +18,6 @@ pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), 
     let station = find_station(class, args.station)?;
     let settings = settings(args);
     check_output(args)?;
-    check_writable(&args.output)?;
     if station.structure.mesh.is_some() {
         // Said of tables from the cache as well: they were baked of the same mesh.
         for warning in Fiber::build(&station.structure, args.seed)?.warnings() {
@@ -41,7 +40,7 @@ pub(super) fn run(args: &Args, start: Instant, console: &Console) -> Result<(), 
             error: args.target_error,
             until: None,
         },
-        cache: Cache::of_user().filter(|_| !args.no_cache),
+        cache: cache::of_user(args.no_cache, console),
     };
     if job.dye.is_some() && args.shard.is_none() {
         let pigment = match &band.dye {
@@ -74,7 +73,10 @@ fn after(bake: &Bake<'_>, settings: &Settings) -> Duration {
 fn check_output(args: &Args) -> Result<(), Failure> {
     let is_sums = args.output.extension().is_some_and(|e| e == "safetensors");
     if is_sums == args.shard.is_some() {
-        return Ok(());
+        return match is_sums {
+            true => Ok(check_writable(&args.output)?),
+            false => cli::check_output(&args.output, "a table", "exr"),
+        };
     }
     let (message, help) = match args.shard {
         Some(_) => (
@@ -263,8 +265,13 @@ impl Job<'_> {
     /// Writes sums or a table, and says how good it is.
     fn write(&self, bake: &Bake<'_>, ended: Ended) -> Result<(), Failure> {
         let (args, console) = (self.args, self.console);
-        if args.shard.is_some() {
-            return Ok(bake.save(&args.output)?);
+        if let Some(shard) = args.shard {
+            bake.save(&args.output)?;
+            let photons = bake.photons();
+            console.say(format!(
+                "shard {shard}: {photons} photons; `vair merge` puts them together"
+            ));
+            return Ok(());
         }
         let table = bake.snapshot()?;
         // The error is estimated while the table is written: a disk is waited for, not computed for.

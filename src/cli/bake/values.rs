@@ -10,11 +10,12 @@ pub(in crate::cli) fn parse_count(text: &str) -> Result<u64, String> {
     if let Ok(exact) = text.parse() {
         return Ok(exact);
     }
-    let exact = value.fract() == 0.0 && (0.0..1.8e19).contains(&value);
-    if exact {
-        Ok(value as u64)
-    } else {
-        Err(refuse())
+    if value >= 1.8e19 {
+        return Err(format!("{text} is too many"));
+    }
+    match value.fract() == 0.0 && value >= 0.0 {
+        true => Ok(value as u64),
+        false => Err(refuse()),
     }
 }
 

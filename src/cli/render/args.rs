@@ -38,7 +38,7 @@ pub(in crate::cli) struct Args {
     #[arg(long)]
     pub(super) env: Option<String>,
     /// Turns the light about the vertical, degrees.
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long)]
     pub(super) env_turn: Option<f32>,
     /// Shows the environment behind the subject instead of a backdrop.
     #[arg(long)]

@@ -2,9 +2,9 @@
 
 use super::args::{Args, ModelArg};
 use crate::assembly::{self, StationTables};
-use crate::bake::{Cache, Settings};
+use crate::bake::Settings;
 use crate::bsdf::{AlongStrand, Chiang, DoubleCylinder, HairMaterial};
-use crate::cli::{Console, Failure, color};
+use crate::cli::{Console, Failure, cache, color};
 use crate::groom::GroomSettings;
 use crate::skin::Skin;
 use crate::species::Species;
@@ -33,11 +33,7 @@ pub(super) fn materials(
     if let Some(material) = given_numbers {
         return Ok(vec![material; species.classes.len()]);
     }
-    let cache = if args.no_cache {
-        None
-    } else {
-        Cache::of_user()
-    };
+    let cache = cache::of_user(args.no_cache, console);
     let bake = Settings {
         photons: args.bake_photons,
         azimuths: args.azimuths,

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, clap::Args)]
 pub(in crate::cli) struct Look {
     /// Exposure of the PNG, in stops; 0 if not given.
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long)]
     exposure: Option<f32>,
     /// How the PNG shows bright parts; soft if not given.
     #[arg(long, value_enum)]

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
   vair species check my-cat.toml --json
   vair species check my-cat.toml --set guard.groom.length_mm=40
 
-Ends with 0 if all files are good, 1 if one is refused, 2 if one cannot be read.")]
+Ends with 0 if all files are good, 1 if one is refused or not there, 2 if one cannot be read.")]
 pub(super) struct Args {
     /// Paths of .toml files, or built-in species.
     #[arg(required = true, value_name = "FILE")]

@@ -3,8 +3,7 @@
 use super::plot::parse_size;
 use super::{at_azimuth, averaged};
 use crate::cli::stdout::{print, print_json};
-use crate::cli::{Console, Failure};
-use crate::io::check_writable;
+use crate::cli::{Console, Failure, check_output};
 use crate::table::{
     Comparison, Difference, DifferencePlot, Provenance, THETA_MAX_DEG, TableFile, compare,
 };
@@ -20,7 +19,7 @@ use std::path::PathBuf;
     vair table compare small.exr fox.exr -o difference.png --incidence 30\n\n\
     The measure is the relative L2 distance of the scattering function S over all pairs of\n\
     directions with both inclinations below --theta-max, evenly in solid angle. 'noise' is what\n\
-    the standard errors in the files make of it, 'debiased' is the distance without that.")]
+    the standard errors in the files make of it, 'debiased' is the distance without that: what the filter\n    takes from each is in it. 'off by' is the largest difference of the albedo.")]
 pub(super) struct Args {
     /// The table to judge.
     a: PathBuf,
@@ -36,16 +35,11 @@ pub(super) struct Args {
     #[arg(long, short)]
     output: Option<PathBuf>,
     /// Inclination of the query direction of the picture, degrees.
-    #[arg(
-        long,
-        value_name = "DEG",
-        default_value_t = 30.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "DEG", default_value_t = 30.0)]
     incidence: f64,
     /// Compare at this azimuth of the query only, degrees from the major axis of the section. The picture
     /// shows the mean over azimuths without it.
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG")]
     azimuth: Option<f64>,
     /// Absorption level or color channel of the picture, counted from 0.
     #[arg(long, value_name = "K", default_value_t = 0)]
@@ -57,7 +51,7 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     if let Some(output) = &args.output {
-        check_writable(output)?;
+        check_output(output, "a picture of the difference", "png")?;
     }
     let (mut a, mut b) = (TableFile::read(&args.a)?, TableFile::read(&args.b)?);
     if let Some(degrees) = args.azimuth {
@@ -166,7 +160,7 @@ fn method(compared: &Comparison) -> &'static str {
 fn text(compared: &Comparison) -> String {
     let mut out = format!(
         "relative L2 of S, |theta| < {} degrees, {} at {} inclinations\n\n\
-         channel  level        error    noise  debiased   albedo  largest, at query, theta, phi\n",
+         channel  level        error    noise  debiased   off by  largest, at query, theta, phi\n",
         compared.theta_max_deg,
         if compared.by_texel {
             "texel by texel"

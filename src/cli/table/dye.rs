@@ -3,7 +3,7 @@
 use crate::blame::Blame;
 use crate::cli::bake::find_class;
 use crate::cli::color;
-use crate::cli::{Console, Failure};
+use crate::cli::{Console, Failure, check_output};
 use crate::species::{self, PigmentBand};
 use crate::table::StructureTable;
 use std::path::PathBuf;
@@ -86,7 +86,7 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
             "use --species NAME, --eumelanin and --pheomelanin, or --absorption R,G,B",
         )
     })?;
-    crate::io::check_writable(&args.output)?;
+    check_output(&args.output, "a table", "exr")?;
     let maps = StructureTable::read(&args.file)?.dye(absorption)?;
     maps.write(&args.output)?;
     console.say(format_args!(

@@ -3,8 +3,7 @@
 use super::compare::{difference_json, not_independent, percent};
 use crate::blame::Blame;
 use crate::cli::stdout::{print, print_json};
-use crate::cli::{Console, Failure};
-use crate::io::check_writable;
+use crate::cli::{Console, Failure, check_output};
 use crate::table::{
     Comparison, PackedTable, Packing, THETA_MAX_DEG, TableError, TableFile, TableRef, compare,
 };
@@ -66,7 +65,7 @@ fn parse_size(text: &str) -> Result<usize, String> {
 }
 
 pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
-    check_writable(&args.output)?;
+    check_output(&args.output, "a table", "exr")?;
     let table = TableFile::read(&args.file)?;
     let other = args.against.as_deref().map(TableFile::read).transpose()?;
     if let (Some(other), Some(path)) = (&other, &args.against)

@@ -3,8 +3,7 @@
 use super::dye::Pigment;
 use super::{at_azimuth, averaged};
 use crate::blame::Blame;
-use crate::cli::{Console, Failure};
-use crate::io::check_writable;
+use crate::cli::{Console, Failure, check_output};
 use crate::species;
 use crate::table::{
     Mode, Plot, Provenance, ScatterMaps, SmoothCylinder, StructureTable, TableError, TableFile,
@@ -23,16 +22,11 @@ pub(super) struct Args {
     #[arg(long, short)]
     output: PathBuf,
     /// Inclination of the query direction in degrees, positive toward the tip.
-    #[arg(
-        long,
-        value_name = "DEG",
-        default_value_t = 45.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "DEG", default_value_t = 45.0)]
     incidence: f64,
     /// Azimuth of the query direction in degrees from the major axis of the section, of a table that has
     /// azimuths; the mean over all if not given.
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG")]
     azimuth: Option<f64>,
     /// Width and height of the picture in pixels.
     #[arg(long, value_name = "WxH", default_value = "1600x1000", value_parser = parse_size)]
@@ -45,7 +39,7 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
-    check_writable(&args.output)?;
+    check_output(&args.output, "a plot", "png")?;
     let pigment = args.pigment.absorption_per_um()?;
     let table = TableFile::read(&args.file)?;
     let azimuths = table.azimuths();
