@@ -122,7 +122,13 @@ pub fn match_colors(
         if (0..3).any(is_off) {
             let [r, g, b] = dye.color.map(|c| (1e3 * c).round() / 1e3);
             let [x, y, z] = shown;
-            let sentence = format!("this coat cannot show {r} {g} {b}, but {x:.3} {y:.3} {z:.3}");
+            let why = match (0..3).any(|c| is_off(c) && shown[c] < dye.color[c]) {
+                true => "without pigment it is no brighter",
+                false => "whatever its pigment, its surface reflects as much",
+            };
+            let sentence = format!(
+                "this coat cannot show {r} {g} {b} (linear), but {x:.3} {y:.3} {z:.3}: {why}"
+            );
             if !out_of_reach.contains(&sentence) {
                 out_of_reach.push(sentence);
             }

@@ -133,6 +133,12 @@ impl Bake<'_> {
 
     /// Tells how large the error is and where the bake will end, if a pass was long enough for that.
     fn report(&self, hand: &mut Hand, seconds: f64, goal: &Goal, progress: &dyn Progress) {
+        let end = self.done().span.end;
+        if goal.error.is_none()
+            && let Some(photons) = self.forecast(hand, end, f64::INFINITY, goal)
+        {
+            self.foretell(photons, progress);
+        }
         // Time for a table is not to be spent on its error.
         let busy = goal.until.is_some_and(|until| {
             let left = until.saturating_duration_since(Instant::now());
@@ -152,11 +158,13 @@ impl Bake<'_> {
         let error = self.error();
         hand.reported = Some((Instant::now(), start.elapsed()));
         progress.note(&format!("error {:.2} %", 100.0 * error));
-        let end = self.done().span.end;
         if let Some(photons) = self.forecast(hand, end, error, goal) {
-            let channels = self.fibers.len() as u64;
-            progress.expect((photons - self.range.start) * channels);
+            self.foretell(photons, progress);
         }
+    }
+
+    fn foretell(&self, photons: u64, progress: &dyn Progress) {
+        progress.expect((photons - self.range.start) * self.fibers.len() as u64);
     }
 
     /// What [`Bake::snapshot`] will take, foretold from what making the filter took on the same threads: neither depends

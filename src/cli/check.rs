@@ -85,7 +85,15 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         print(&lines(&findings))?;
     }
     let read = args.files.len() - refused.len();
-    let summary = format!("{read} files: {errors} errors, {warnings} warnings, {notes} notes");
+    let many =
+        |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+    let summary = format!(
+        "{}: {}, {}, {}",
+        many(read, "file"),
+        many(errors, "error"),
+        many(warnings, "warning"),
+        many(notes, "note")
+    );
     if !refused.is_empty() {
         return Err(not_read(&refused, read, summary));
     }

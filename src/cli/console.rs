@@ -97,7 +97,7 @@ impl Progress for Console {
 }
 
 /// `1234567.0` as `1.23 M`.
-fn short_count(value: f64) -> String {
+pub(super) fn short_count(value: f64) -> String {
     match value {
         v if v >= 1e9 => format!("{:.2} G", v / 1e9),
         v if v >= 1e6 => format!("{:.2} M", v / 1e6),

@@ -179,6 +179,7 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
                 };
                 let cancel = console.cancel();
                 micrograph::draw(view, &subject, &shot, console, cancel)?.write_png(path)?;
+                console.say(format_args!("drawn: {}", path.display()));
             }
             Format::Obj => mesh::write_obj(path, &fiber.mesh())?,
             Format::Ply => mesh::write_ply(path, &fiber.mesh())?,

@@ -42,7 +42,7 @@ pub(super) struct Args {
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum QualityArg {
-    /// Small: a minute or so, most of it for tables that are baked once.
+    /// Small: one to some minutes, most of it for tables that are baked once and for fits.
     Draft,
     /// As the recipe has it for print.
     Full,
@@ -156,7 +156,9 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
         }
         pictures.push(Canvas::read_png(&panel_path(folder, i, "png"))?);
     }
-    Ok(sheet(&recipe, &pictures).write_png(output)?)
+    sheet(&recipe, &pictures).write_png(output)?;
+    console.say(format_args!("drawn: {}", output.display()));
+    Ok(())
 }
 
 fn recipe_text(name: &str) -> Result<String, Failure> {

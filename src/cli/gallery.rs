@@ -230,6 +230,9 @@ impl Work<'_> {
             );
             return Err(Failure::new(Blame::Interrupted, message));
         }
+        for path in &self.args.output {
+            self.console.say(format_args!("drawn: {}", path.display()));
+        }
         Ok(())
     }
 

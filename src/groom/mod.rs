@@ -133,7 +133,7 @@ pub fn grow(
     let surface = Surface::new(skin)?;
     let plan = plan::plan(skin, surface.weighted_area(), species, settings.strands)?;
     let total: usize = plan.iter().map(|c| c.strands).sum();
-    progress.begin("growing fur", 2 * total as u64, "strands");
+    progress.begin("placing roots", total as u64, "roots");
     let comb = Comb::new(&species.groom.comb, skin);
     let symmetry = Symmetry {
         mirror: skin.mirror.as_ref(),
@@ -170,6 +170,8 @@ pub fn grow(
     let (scattered, (coat, field, collider)) =
         rayon::join(scatter, || (paint(), field(), collider()));
     let (scattered, coat, collider) = (scattered?, coat?, collider?);
+    progress.finish();
+    progress.begin("growing fur", total as u64, "strands");
     let mut groom = Groom {
         classes: species.classes.iter().map(|c| c.name.clone()).collect(),
         coats: match &species.coat {

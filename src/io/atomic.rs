@@ -72,12 +72,18 @@ impl AtomicFile {
             return Err(FileError::new("write", path, reason));
         }
         let folder = folder_of(&target);
+        if !folder.is_dir() {
+            let reason = format!("there is no folder {}", folder.display());
+            return Err(fail(io::Error::new(io::ErrorKind::NotFound, reason)));
+        }
         stale::sweep(folder);
         let mut builder = tempfile::Builder::new();
         builder.prefix(stale::PREFIX).suffix(stale::SUFFIX);
         #[cfg(unix)]
         builder.permissions(new_file());
-        let temp = builder.tempfile_in(folder).map_err(fail)?;
+        // Without the name of the temporary file, which tells nobody anything.
+        let temp = builder.tempfile_in(folder);
+        let temp = temp.map_err(|e| fail(io::Error::from(e.kind())))?;
         stale::claim(temp.as_file());
         Ok(Self {
             path: path.to_owned(),

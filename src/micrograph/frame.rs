@@ -163,10 +163,21 @@ pub(super) fn bar(
     taken
 }
 
-/// Breaks a text into lines of at most `columns` characters.
+/// Breaks a text into lines of at most `columns` characters. Numbers and their units stay together.
 pub(crate) fn wrap(text: &str, columns: usize) -> Vec<String> {
-    let mut lines: Vec<String> = vec![String::new()];
+    let mut words: Vec<String> = Vec::new();
     for word in text.split(' ') {
+        let is_unit = matches!(word.trim_end_matches([',', ';']), "%" | "µm" | "mm");
+        match words.last_mut() {
+            Some(number) if is_unit && number.ends_with(|c: char| c.is_ascii_digit()) => {
+                number.push(' ');
+                number.push_str(word);
+            }
+            _ => words.push(word.to_owned()),
+        }
+    }
+    let mut lines: Vec<String> = vec![String::new()];
+    for word in &words {
         if let Some(line) = lines.last_mut() {
             if line.is_empty() {
                 line.push_str(word);

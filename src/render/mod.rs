@@ -109,7 +109,8 @@ pub enum RenderError {
         height: u32,
     },
     /// The crop is empty or reaches over the frame.
-    #[error("the crop {crop:?} is not inside the picture of {width} x {height} pixels")]
+    #[error("the crop {},{},{},{} is not inside the picture of {width} x {height} pixels",
+        crop.x, crop.y, crop.width, crop.height)]
     Crop {
         /// The crop.
         crop: Crop,
@@ -168,6 +169,13 @@ impl RenderJob {
                 height,
             })
         }
+    }
+
+    /// Bytes that the sums of a checked job and the film made of them take together.
+    pub fn memory(&self) -> u64 {
+        let crop = self.crop.unwrap_or(Crop::whole(self.resolution));
+        let pixel = std::mem::size_of::<film::PixelSums>() + std::mem::size_of::<Pixel>();
+        u64::from(crop.width) * u64::from(crop.height) * pixel as u64
     }
 
     /// Renders. See [`Rendering`] for pictures that are saved on the way.

@@ -112,7 +112,11 @@ pub(crate) static SCENE: Shape = Shape {
             Kind::Settings(2, number(1.0, 65536.0, "pixels")),
             "Width and height of the picture.",
         ),
-        Field::optional("spp", Kind::Count(number(1.0, 1e9, "")), "Samples a pixel."),
+        Field::optional(
+            "spp",
+            Kind::Count(number(1.0, 16_777_216.0, "")),
+            "Samples a pixel.",
+        ),
         Field::optional(
             "sampler",
             Kind::Choice(SAMPLERS),

@@ -13,7 +13,7 @@ pub enum SkinError {
         name: String,
     },
     /// The file could not be read or is no mesh.
-    #[error("skin {0}")]
+    #[error("skin: {0}")]
     Mesh(#[from] MeshFileError),
     /// A unit that is none.
     #[error("the unit of the skin is {unit_m} m, expected a finite number above 0")]

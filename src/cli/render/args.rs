@@ -22,7 +22,7 @@ use std::time::Duration;
   vair render alpaca --color '#c8642a' -o rusty.png
   vair render mink --skin sofa.obj --strands 1e6 -o sofa.png
   vair render examples/scenes/fox-by-a-window.toml --res 1280x720 -o window.png
-  vair render red-fox --crop 200,150,64,64 --spp 256 -o eye.exr")]
+  vair render red-fox --crop 453,98,64,64 --spp 256 -o eye.exr")]
 pub(in crate::cli) struct Args {
     /// A built-in species, a path to a species file, or a scene file, whose keys are options of this command.
     pub(super) name: String,

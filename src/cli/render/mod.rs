@@ -12,6 +12,7 @@ mod stats;
 
 pub(super) use args::Args;
 
+use super::console::short_count;
 use super::{Console, Failure};
 use crate::blame::Blame;
 use crate::export::mitsuba::MitsubaScene;
@@ -45,6 +46,7 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     }
     let job = job(args)?;
     job.check()?;
+    check_memory(&job)?;
     if args.mitsuba.is_some() && args.model != ModelArg::Chiang {
         return Err(Failure::with_help(
             Blame::Input,
@@ -83,6 +85,15 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     let live = live.transpose()?;
     let given = args.table.iter().map(|path| TableFile::read(path));
     let given = given.collect::<Result<Vec<_>, _>>()?;
+    for table in &given {
+        let of = &table.provenance().species;
+        if *of != species.id {
+            console.say(format!(
+                "note: a table of {of} stands in for one of {}",
+                species.id
+            ));
+        }
+    }
     let skin = args.on.load()?;
     let view = view(args, &skin)?;
     let environment = environment(args, &view)?;
@@ -161,8 +172,13 @@ fn run_here(args: &Args, console: &Console) -> Result<(), Failure> {
     }
     if cancel.is_cancelled() {
         let message = format!(
-            "stopped; {} holds the samples done so far",
-            output::list(&args.output)
+            "stopped; {} holds the samples done so far{}",
+            output::list(&args.output),
+            if kept.is_some() {
+                ", and the same command goes on from there"
+            } else {
+                ""
+            }
         );
         return Err(Failure::new(Blame::Interrupted, message));
     }
@@ -251,15 +267,37 @@ fn lamps(args: &Args, view: &View) -> Vec<Lamp> {
     args.lamps.iter().map(place).collect()
 }
 
+/// Refuses a picture that is too large now rather than when the fur is grown.
+fn check_memory(job: &RenderJob) -> Result<(), Failure> {
+    let bytes = job.memory();
+    // The system gives nothing of it until it is written to, but refuses what it does not have.
+    let probe = usize::try_from(bytes).map(|bytes| Vec::<u8>::new().try_reserve_exact(bytes));
+    match probe {
+        Ok(Ok(())) => Ok(()),
+        _ => Err(Failure::with_help(
+            Blame::Environment,
+            format!(
+                "the pixels need {:.1} GB of memory, which the system does not have",
+                bytes as f64 / 1e9
+            ),
+            "a smaller --res, or a --crop of it at a time",
+        )),
+    }
+}
+
 fn report(film: &Film, console: &Console) {
     let report = &film.report;
     let seconds = report.elapsed.as_secs_f64();
+    let many = |count: f64| short_count(count).trim_end().to_owned();
+    let noise = match film.pixels.iter().all(|pixel| pixel.samples < 2) {
+        true => "one sample a pixel says nothing of its noise: nothing is taken out".to_owned(),
+        false => format!("noise {:.2} %", 100.0 * film.noise()),
+    };
     console.say(format!(
-        "{:.1} M samples, {:.1} M rays in {seconds:.1} s ({:.2} M rays/s), noise {:.2} %",
-        report.samples as f64 / 1e6,
-        report.rays as f64 / 1e6,
-        report.rays_in_elapsed as f64 / 1e6 / seconds.max(1e-9),
-        100.0 * film.noise(),
+        "{} samples, {} rays in {seconds:.1} s ({}/s), {noise}",
+        many(report.samples as f64),
+        many(report.rays as f64),
+        many(report.rays_in_elapsed as f64 / seconds.max(1e-9)),
     ));
     if report.dropped > 0 || report.capped > 0 {
         console.say(format!(

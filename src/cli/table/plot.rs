@@ -75,7 +75,10 @@ pub(super) fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Mode::Paper => "paper",
         Mode::Cone => "cone",
     };
+    // Four digits of them.
     let photons = maps.photons();
+    let last = 10f64.powf(photons.max(1.0).log10().floor() - 3.0).max(1.0);
+    let photons = (photons / last).round() * last;
     let plot = Plot {
         maps,
         gray: subject.gray,

@@ -41,7 +41,7 @@ pub(super) fn draw(canvas: &mut Canvas, pen: &Pen, area: Area, maps: &ScatterMap
             0.5 * pen.hair(),
             FAINT,
         );
-        let below = foot + Vec2::new(0.0, 0.6 * line);
+        let below = foot + Vec2::new(0.0, 0.9 * line);
         pen.center(canvas, below, &degrees(theta.to_degrees()), INK);
     }
     let here = plot.incidence_deg.to_radians();

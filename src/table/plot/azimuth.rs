@@ -155,7 +155,7 @@ fn axes(canvas: &mut Canvas, pen: &Pen, area: Area, top: f32) {
     for k in -2..=2 {
         let x = 0.5 + 0.25 * k as f32;
         canvas.line(at(x, 0.0), at(x, 1.0), 0.5 * pen.hair(), FAINT);
-        let below = at(x, 1.0) + Vec2::new(0.0, 0.6 * line);
+        let below = at(x, 1.0) + Vec2::new(0.0, 0.9 * line);
         pen.center(canvas, below, &degrees(90.0 * f64::from(k)), INK);
     }
 }

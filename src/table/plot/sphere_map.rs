@@ -155,11 +155,11 @@ fn grid(canvas: &mut Canvas, pen: &Pen, plot: Area, style: &MapStyle<'_>) {
         let (a, b) = (place(plot, FRAC_PI_2, phi), place(plot, -FRAC_PI_2, phi));
         thin(canvas, a, b, (ink, 0.18), pen.hair());
         if k % 3 == 0 {
-            let below = b + Vec2::new(0.0, 0.6 * line);
+            let below = b + Vec2::new(0.0, 0.9 * line);
             pen.center(canvas, below, &degrees(phi.to_degrees()), INK);
         }
     }
-    let below = place(plot, -FRAC_PI_2, 0.0) + Vec2::new(0.0, 2.0 * line);
+    let below = place(plot, -FRAC_PI_2, 0.0) + Vec2::new(0.0, 2.2 * line);
     pen.center(
         canvas,
         below,
