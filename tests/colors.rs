@@ -103,7 +103,7 @@ fn what_cannot_be_shown_is_said() {
     let (animal, said) = matched(animal, "ball");
     assert_eq!(said.len(), 1);
     assert!(
-        said[0].starts_with("this coat cannot show 1 0 0.2, but 0."),
+        said[0].starts_with("this coat cannot show 1 0 0.2 (linear), but 0."),
         "{said:?}"
     );
     let absorption = animal.classes[0].pigment[0].absorption_per_um();

@@ -6,7 +6,7 @@ use crate::species::Structure;
 use serde_json::Value;
 
 /// Raised whenever geometry, photon walk or tally change what comes out between two versions.
-const FORMAT: u32 = 11;
+const FORMAT: u32 = 12;
 
 /// Lists longer than this are named by their hash: a mesh has millions of corners.
 const LONGEST_LIST: usize = 64;

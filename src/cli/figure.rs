@@ -5,7 +5,6 @@ use super::{Cli, Command, Console, Failure};
 use crate::blame::Blame;
 use crate::image::{Canvas, GLYPH_HEIGHT};
 use crate::io::{FileError, read_bounded};
-use clap::Parser as _;
 use glam::{Vec2, Vec3};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -262,7 +261,7 @@ impl Recipe {
                 let [width, height] = self.size.map(|n| (f64::from(n) * quality.scale).round());
                 words.extend(["--res".to_owned(), format!("{width}x{height}")]);
             }
-            let cli = Cli::try_parse_from(words).map_err(|e| of(e.to_string()))?;
+            let cli = Cli::from_words(words).map_err(|e| of(e.to_string()))?;
             commands.push(cli.command);
         }
         match commands.is_empty() {

@@ -32,6 +32,7 @@ pub use failure::Failure;
 use crate::blame::Blame;
 use crate::io::check_writable;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -79,8 +80,7 @@ enum Command {
 /// Parses the command line, runs the command and returns the exit code.
 pub fn run() -> ExitCode {
     std::panic::set_hook(Box::new(end_in_order));
-    let matches = with_negative_numbers(Cli::command()).try_get_matches();
-    let cli = match matches.and_then(|mut matches| Cli::from_arg_matches_mut(&mut matches)) {
+    let cli = match Cli::from_words(std::env::args_os()) {
         Ok(cli) => cli,
         Err(error) => {
             // clap exits with 2 by itself; here a bad option is refused input, which is 1.
@@ -96,6 +96,16 @@ pub fn run() -> ExitCode {
     match dispatch(cli.command, &console) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
+    }
+}
+
+impl Cli {
+    /// * `words`: the program's name first.
+    fn from_words<T: Into<OsString> + Clone>(
+        words: impl IntoIterator<Item = T>,
+    ) -> Result<Self, clap::Error> {
+        let mut matches = with_negative_numbers(Self::command()).try_get_matches_from(words)?;
+        Self::from_arg_matches_mut(&mut matches)
     }
 }
 

@@ -114,7 +114,7 @@ fn broken_files_are_named_beside_the_findings_of_others() {
     for word in [
         "gone.usda",
         "torn.usda: line 2",
-        "1 files: 0 errors, 1 warnings",
+        "1 file: 0 errors, 1 warning",
     ] {
         assert!(said.contains(word), "{word}: {said}");
     }

@@ -85,14 +85,13 @@ mod tests {
     use crate::cli::{Cli, Command};
     use crate::scene_file::SCENE;
     use crate::species::shape::Kind;
-    use clap::Parser as _;
 
     fn filled(words: &[&str]) -> Args {
         let words = ["vair", "render"]
             .iter()
             .chain(words)
             .chain(&["-o", "a.png"]);
-        match Cli::try_parse_from(words).unwrap().command {
+        match Cli::from_words(words).unwrap().command {
             Command::Render(args) => args.filled().unwrap(),
             other => panic!("{other:?}"),
         }
