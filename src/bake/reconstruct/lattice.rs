@@ -198,10 +198,6 @@ impl Lattice {
         &self.shares[self.starts[at]..self.starts[at + 1]]
     }
 
-    fn x_of(&self, node: usize, point: &Point) -> usize {
-        ((self.zeros[node] + point.theta) as usize).min(self.size[0] - 1)
-    }
-
     /// The first cell along x that a point stands for, and the share of it in the next.
     fn rows_of(&self, node: usize, point: &Point) -> (usize, f32) {
         let from = self.zeros[node] + point.theta - 0.5 * point.reach;
@@ -285,10 +281,17 @@ impl Lattice {
                 for (cell, points) in self.points.iter().enumerate() {
                     let mut sum = [0.0; STRIP];
                     for point in points {
-                        let row = &seen[self.x_of(node, point) * np..][..np];
+                        let (x, beyond) = self.rows_of(node, point);
                         let low = point.low as usize;
-                        for ((sum, a), b) in sum.iter_mut().zip(row[low]).zip(row[low + 1]) {
-                            *sum += point.weight * (a + point.high * (b - a));
+                        for (x, part) in [(x, 1.0 - beyond), (x + 1, beyond)] {
+                            if part == 0.0 {
+                                continue;
+                            }
+                            let row = &seen[x * np..][..np];
+                            let weight = part * point.weight;
+                            for ((sum, a), b) in sum.iter_mut().zip(row[low]).zip(row[low + 1]) {
+                                *sum += weight * (a + point.high * (b - a));
+                            }
                         }
                     }
                     see(cell, &sum);

@@ -24,7 +24,7 @@ fn fiber(name: &str) -> Fiber {
 
 /// Photons over all nodes, and how many times as many the truth is taken from.
 const PHOTONS: u64 = 60_000;
-const BETTER: u64 = 10;
+const BETTER: u64 = 20;
 
 /// The sum over nodes and texels within the norm of the product of what two tables are off two truths
 /// with nothing in common, relative to S squared: noise of the truths drops out, and so does that
