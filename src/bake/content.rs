@@ -5,7 +5,7 @@ use crate::hex::hex_digest;
 use crate::species::Structure;
 use serde_json::Value;
 
-/// Raised whenever geometry, photon walk or tally change what comes out between two versions.
+/// Raised whenever geometry, photon walk, tally or filter change what comes out between two versions.
 const FORMAT: u32 = 12;
 
 /// Lists longer than this are named by their hash: a mesh has millions of corners.
