@@ -159,14 +159,10 @@ pub fn drive(
             Some(ended) => ended == Ended::Cancelled && bake.photons() > 0,
         };
         let saved = checkpoint.as_mut().filter(|c| due(c)).map(|c| c.save(bake));
-        let failed = match saved {
-            Some(Err(error)) => (!std::mem::replace(&mut failing, true)).then_some(error),
-            Some(Ok(())) => {
-                failing = false;
-                None
-            }
-            None => None,
-        };
+        let failed = saved.and_then(|saved| {
+            let again = std::mem::replace(&mut failing, saved.is_err());
+            saved.err().filter(|_| !again)
+        });
         between(bake, failed);
         if let Some(ended) = ended {
             break ended;

@@ -102,6 +102,6 @@ pub(super) fn short_count(value: f64) -> String {
         v if v >= 1e9 => format!("{:.2} G", v / 1e9),
         v if v >= 1e6 => format!("{:.2} M", v / 1e6),
         v if v >= 1e3 => format!("{:.1} k", v / 1e3),
-        v => format!("{v:.1} "),
+        v => format!("{v:.1}"),
     }
 }

@@ -316,6 +316,38 @@ mod tests {
         (Lattice::new(cube, nodes, &texels, true), texels)
     }
 
+    /// The mean density of a texel over the queries of a node's bin.
+    ///
+    /// * `steps`: queries, and points of the texel along each side.
+    /// * `s_of`: S of query, exit and azimuth.
+    fn density(
+        cube: &Unicube,
+        nodes: &Nodes,
+        [node, texel]: [usize; 2],
+        steps: [usize; 2],
+        s_of: impl Fn(f64, f64, f64) -> f64,
+    ) -> f64 {
+        let (lo, hi) = (nodes.edges[node], nodes.edges[node + 1]);
+        let [queries, points] = steps;
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for i in 0..queries {
+            let query = lo + (hi - lo) * (i as f64 + 0.5) / queries as f64;
+            weights += query.cos();
+            for j in 0..points * points {
+                let at = |i: usize| (i as f64 + 0.5) / points as f64;
+                let (w, _) = cube.direction(texel, at(j % points), at(j / points));
+                let theta = frame::theta_of(w);
+                let exit = theta + nodes.centers[node] - query;
+                if exit.abs() < FRAC_PI_2 {
+                    let s = s_of(query, exit, w.y.atan2(w.x));
+                    let all = (points * points) as f64;
+                    sum += query.cos() * s * exit.cos().powi(2) / theta.cos() / all;
+                }
+            }
+        }
+        sum / weights
+    }
+
     /// Light that is the same all round is so on the lattice.
     #[test]
     fn azimuths_get_what_is_theirs() {
@@ -347,23 +379,9 @@ mod tests {
         let (lattice, texels) = folded(&cube, &nodes);
         let [nx, ny, np] = lattice.size();
         for node in [4, 8, 11] {
-            let (lo, hi) = (nodes.edges[node], nodes.edges[node + 1]);
             let counts = texels.iter().map(|&[texel, _]| {
-                let (mut sum, mut weights) = (0.0, 0.0);
-                for i in 0..16 {
-                    let query = lo + (hi - lo) * (f64::from(i) + 0.5) / 16.0;
-                    weights += query.cos();
-                    for j in 0..64 {
-                        let at = |i: i32| (f64::from(i) + 0.5) / 8.0;
-                        let (w, _) = cube.direction(texel, at(j % 8), at(j / 8));
-                        let theta = frame::theta_of(w);
-                        let exit = theta + nodes.centers[node] - query;
-                        if exit.abs() < FRAC_PI_2 {
-                            sum += query.cos() * exit.cos().powi(2) / theta.cos() / 64.0;
-                        }
-                    }
-                }
-                [[(1000.0 * sum / weights * cube.solid_angle(texel)) as f32; 4]]
+                let density = density(&cube, &nodes, [node, texel], [16, 8], |_, _, _| 1.0);
+                [[(1000.0 * density * cube.solid_angle(texel)) as f32; 4]]
             });
             let mut sums = [Field::new(lattice.size())];
             lattice.gather(node, counts, &mut sums);
@@ -395,26 +413,8 @@ mod tests {
             let along = 0.5 * (q - o);
             0.1 + (-6.0 * (q + o).powi(2)).exp() * (1.5 + phi.cos()) * (0.5 + 2.0 * along * along)
         };
-        // The mean density of a texel over the queries of its bin, by points.
-        let density = |node: usize, texel: usize| {
-            let (lo, hi) = (nodes.edges[node], nodes.edges[node + 1]);
-            let (mut sum, mut weights) = (0.0, 0.0);
-            for i in 0..8 {
-                let query = lo + (hi - lo) * (f64::from(i) + 0.5) / 8.0;
-                weights += query.cos();
-                for j in 0..9 {
-                    let at = |i: i32| (f64::from(i) + 0.5) / 3.0;
-                    let (w, _) = cube.direction(texel, at(j % 3), at(j / 3));
-                    let theta = frame::theta_of(w);
-                    let exit = theta + nodes.centers[node] - query;
-                    if exit.abs() < FRAC_PI_2 {
-                        let s = s_of(query, exit, w.y.atan2(w.x));
-                        sum += query.cos() * s * exit.cos().powi(2) / theta.cos() / 9.0;
-                    }
-                }
-            }
-            sum / weights
-        };
+        let density =
+            |node: usize, texel: usize| density(&cube, &nodes, [node, texel], [8, 3], s_of);
         let photons = vec![1000.0; nodes.len()];
         let mut sums = [Field::new(lattice.size())];
         for (node, &photons) in photons.iter().enumerate() {

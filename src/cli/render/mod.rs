@@ -288,16 +288,15 @@ fn check_memory(job: &RenderJob) -> Result<(), Failure> {
 fn report(film: &Film, console: &Console) {
     let report = &film.report;
     let seconds = report.elapsed.as_secs_f64();
-    let many = |count: f64| short_count(count).trim_end().to_owned();
     let noise = match film.pixels.iter().all(|pixel| pixel.samples < 2) {
         true => "one sample a pixel says nothing of its noise: nothing is taken out".to_owned(),
         false => format!("noise {:.2} %", 100.0 * film.noise()),
     };
     console.say(format!(
         "{} samples, {} rays in {seconds:.1} s ({}/s), {noise}",
-        many(report.samples as f64),
-        many(report.rays as f64),
-        many(report.rays_in_elapsed as f64 / seconds.max(1e-9)),
+        short_count(report.samples as f64),
+        short_count(report.rays as f64),
+        short_count(report.rays_in_elapsed as f64 / seconds.max(1e-9)),
     ));
     if report.dropped > 0 || report.capped > 0 {
         console.say(format!(
